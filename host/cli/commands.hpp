@@ -1,0 +1,12 @@
+// The subcommands of `clvr`, one file each; main.cpp registers them all and catches Error once.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace clvr {
+
+/// Each adds its subcommand with options and a callback to the app. Callbacks throw Error.
+void add_devices_command(CLI::App& app); // devices.cpp
+void add_info_command(CLI::App& app);    // info.cpp
+void add_render_command(CLI::App& app);  // render.cpp
+
+} // namespace clvr

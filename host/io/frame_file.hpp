@@ -1,0 +1,34 @@
+// Frames to and from files.
+#pragma once
+#include "host/render/frame.hpp"
+
+#include <array>
+#include <string>
+
+namespace clvr {
+
+/// Scanline float32 ZIP OpenEXR with all channels and string attributes. Written beside, synced, renamed. Throws Error{input} when it cannot be written.
+void write_exr(const Frame& frame, const std::string& path);
+/// Reads any scanline or tiled, half or float (or uint) EXR, channels in any order; the data window becomes the frame. Throws Error{input}.
+Frame read_exr(const std::string& path);
+
+/// How linear radiance becomes 8-bit sRGB: exposure in stops, then a curve by name (filmic, aces, reinhard, none), then sRGB.
+struct Tonemap {
+    std::string curve = "filmic";
+    double exposure = 0;
+};
+/// R G B A of the frame as 8-bit RGBA (unpremultiplied, straight alpha as PNG wants) when alpha is not 1 everywhere, else RGB.
+void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);
+
+/// Linear RGB image, row 0 on top: [width*height*3].
+struct RgbImage {
+    int width = 0, height = 0;
+    std::vector<float> rgb;
+};
+/// Radiance .hdr or OpenEXR latitude-longitude image. Throws Error{input} (also for negative or non-finite radiance: names the pixel).
+RgbImage read_environment_image(const std::string& path);
+
+/// Throws Error{input} unless a file can be created at `path` with a known ending (.exr or .png): called before rendering starts.
+void check_frame_path(const std::string& path);
+
+} // namespace clvr

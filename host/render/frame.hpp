@@ -1,0 +1,30 @@
+// A finished picture with its channels, as the renderer makes it and EXR files hold it.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// Channels are planar float32, row 0 on top, width*height values each, named as in DESIGN.md section 4 "Frames":
+/// R G B A (linear, premultiplied), albedo.R ..., normal.X ..., depth.Z, opacity.A, depth.deviation, depth.half, variance.R ..., background.R ...
+struct Frame {
+    int width = 0, height = 0;
+    std::map<std::string, std::vector<float>> channels;
+    std::map<std::string, std::string> attributes; ///< provenance: "clvr.volume.sha256", "clvr.scene", "clvr.seed", "clvr.spp", "clvr.device", ...
+
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
+    bool has(const std::string& name) const { return channels.count(name) != 0; }
+    const std::vector<float>& at(const std::string& name) const { return channels.at(name); }
+    /// The channel, made (all 0) when absent.
+    std::vector<float>& channel(const std::string& name) {
+        auto& c = channels[name];
+        c.resize(pixels());
+        return c;
+    }
+};
+
+/// SHA-256 (hex) over size, channel names in order and the bits of every pixel; attributes do not count.
+std::string pixel_hash(const Frame& frame);
+
+} // namespace clvr

@@ -1,0 +1,57 @@
+// Physical value -> colour and opacity.
+#pragma once
+#include "host/volume/voxels.hpp"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// Number of entries of the device table.
+constexpr int transfer_entries = 4096;
+
+/// Piecewise linear classification (after interpolation). Points ascend in value; two points at one value make a step, which the table turns
+/// into a ramp of one entry. Outside [first, last] the end points hold.
+struct TransferFunction {
+    struct Point {
+        double value;             ///< physical value, or 0..1 of the volume's range when `normalized`
+        std::array<double, 3> color; ///< linear RGB, 0..1: single-scattering albedo
+        double opacity;           ///< 0..1: extinction as a share of the scene's greatest
+    };
+    bool normalized = false;
+    std::vector<Point> points;
+    std::string name; ///< preset name, file, or "auto"
+};
+
+/// The device table over stored values: entry e stands for stored value first + e * (last - first) / 4095.
+struct TransferTable {
+    double first = 0, last = 1;  ///< stored values of entry 0 and of the last entry; first < last
+    std::vector<float> opacity;  ///< [4096]
+    std::vector<float> color;    ///< [4096 * 4], linear RGB and 0
+    double visible_width = 0;    ///< width of the value interval with opacity > 0, in stored values (0: nothing is visible)
+    double index_scale() const { return (transfer_entries - 1) / (last - first); }
+};
+
+/// Tabulates `tf` for a volume whose stored values span `low`..`high`. Computed in double, rounded once, without libm.
+/// A negative slope reverses the value axis. Throws Error{input} for an empty or non-finite transfer function.
+TransferTable tabulate(const TransferFunction& tf, const Voxels& v, double low, double high);
+
+/// Reads DESIGN's JSON or a ParaView colour-map JSON. `where` names the source in errors. Throws Error{input}.
+TransferFunction parse_transfer_function(const std::string& json_text, const std::string& where);
+/// DESIGN's JSON, linear colours, every number with the digits that read back to the same bits.
+std::string to_json(const TransferFunction& tf);
+
+/// Names and one-line descriptions of the built-in presets (ct-bone, ct-soft-tissue, ct-angio, ct-lung, mr, generic, ...).
+struct Preset {
+    std::string name, description;
+};
+std::vector<Preset> transfer_presets();
+/// A preset by name. Throws Error{usage} listing the names.
+TransferFunction transfer_preset(const std::string& name);
+
+/// The default where no choice was made: built from the histogram, so that air and background vanish and structure shows.
+/// Deterministic in the voxels alone.
+TransferFunction automatic_transfer_function(const Voxels& v, const Histogram& h);
+
+} // namespace clvr

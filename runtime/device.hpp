@@ -1,0 +1,145 @@
+// An opened OpenCL device: context, in-order profiling queue, program store, memory account, tunables.
+#pragma once
+#include "runtime/error.hpp"
+#include "runtime/facts.hpp"
+#include "runtime/opencl.hpp"
+#include "runtime/profile.hpp"
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace clvr {
+
+/// Preprocessor definitions of a kernel build: name -> value, in sorted order, part of the program cache's key.
+using Defines = std::map<std::string, std::string>;
+
+/// Work-items wanted per dimension. `launch` rounds each up to a multiple of the local size, so every kernel guards its index.
+struct Range {
+    std::size_t x = 1, y = 1, z = 1;
+};
+
+/// What a launch moves and computes, where known (0: unknown); feeds the GB/s and GFLOP/s columns of `--profile`.
+struct Work {
+    double bytes = 0, flops = 0;
+};
+
+/// Device memory, accounted: released (and credited back) on destruction. Movable, not copyable; empty when default-constructed.
+class Buffer {
+public:
+    Buffer() = default;
+    std::size_t bytes() const { return bytes_; }
+    explicit operator bool() const { return bytes_ != 0; }
+    const cl::Buffer& handle() const { return handle_; }
+
+private:
+    friend class Device;
+    cl::Buffer handle_;
+    std::size_t bytes_ = 0;
+    std::shared_ptr<void> credit_; // gives the bytes back to the device's account
+};
+
+/// A `__local` argument of the given size in bytes.
+struct LocalMemory {
+    std::size_t bytes;
+};
+
+/// One entry point, built for one device. The label of its launches is the entry point's name.
+class Kernel {
+public:
+    Kernel() = default;
+    const std::string& label() const { return label_; }
+
+private:
+    friend class Device;
+    cl::Kernel handle_;
+    std::string label_;
+};
+
+/// A device in use. Cheap to copy (a shared handle); one host thread at a time drives one Device.
+class Device {
+public:
+    /// Opens the device that `facts` describe (see select.hpp for the choice).
+    /// Throws Error{device} when it has no compiler or fails the trust probe (unless `relaxed`), naming it and the operation.
+    static Device open(const DeviceFacts& facts, bool relaxed = false);
+
+    const DeviceFacts& facts() const;
+
+    /// Tunables (speed only, never bits): packet width and such. `tunable` returns the stored value, else `fallback`.
+    int tunable(const std::string& name, int fallback) const;
+    void set_tunable(const std::string& name, int value);
+
+    /// Largest single allocation and what is left of the total in bytes, by clvr's own account
+    /// (device limits, lowered by CLVR_MAX_ALLOC, CLVR_MAX_MEMORY and set_memory_limit()).
+    std::size_t max_alloc_bytes() const;
+    std::size_t free_bytes() const;
+    std::size_t used_bytes() const;
+    std::size_t peak_bytes() const;
+    void set_memory_limit(std::size_t bytes);
+
+    /// Allocates device memory (at least 1 byte). `label` names it in the error. Throws Error{memory} before the driver is asked when it cannot fit.
+    Buffer buffer(std::size_t bytes, std::string_view label);
+
+    /// Blocking transfers, bounds-checked; offsets and sizes in bytes.
+    void write(Buffer& to, const void* from, std::size_t bytes, std::size_t offset = 0);
+    void read(const Buffer& from, void* to, std::size_t bytes, std::size_t offset = 0);
+    /// Fills the buffer with one byte value.
+    void fill(Buffer& to, unsigned char value);
+
+    template <class T>
+    Buffer upload(const std::vector<T>& from, std::string_view label) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        Buffer b = buffer(from.empty() ? sizeof(T) : from.size() * sizeof(T), label);
+        if (!from.empty()) write(b, from.data(), from.size() * sizeof(T));
+        return b;
+    }
+    template <class T>
+    std::vector<T> download(const Buffer& from, std::size_t count, std::size_t first = 0) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        std::vector<T> to(count);
+        if (count) read(from, to.data(), count * sizeof(T), first * sizeof(T));
+        return to;
+    }
+
+    /// The entry point of "kernels/<stage>.cl": stage "render/shade" is file render/shade.cl, entry point shade, label "shade".
+    /// Built on first use with `defines` (and the device's own ones), then kept in process and on disk.
+    /// A build failure throws Error{device} whose text holds the compiler's log with file and line.
+    Kernel kernel(const std::string& stage, const Defines& defines = {});
+
+    /// Enqueues a kernel over `global` (rounded up to `local`); arguments are Buffer, LocalMemory or trivially copyable values, in order.
+    template <class... Args>
+    void launch(Kernel& k, Range global, Range local, Work work, const Args&... args) {
+        cl_uint i = 0;
+        (set_arg(k, i++, args), ...);
+        enqueue(k, global, local, work);
+    }
+
+    /// Waits for everything enqueued.
+    void finish();
+
+    /// Timings of all launches and transfers since opening (times resolved by finish()).
+    Profile& profile();
+
+    const cl::Context& context() const;
+    cl::CommandQueue& queue();
+
+private:
+    struct State;
+    std::shared_ptr<State> state_;
+    void set_arg_bytes(Kernel& k, cl_uint i, std::size_t bytes, const void* value);
+    void set_arg(Kernel& k, cl_uint i, const Buffer& b) { set_arg_bytes(k, i, sizeof(cl_mem), &b.handle()()); }
+    void set_arg(Kernel& k, cl_uint i, const LocalMemory& m) { set_arg_bytes(k, i, m.bytes, nullptr); }
+    template <class T>
+    void set_arg(Kernel& k, cl_uint i, const T& value) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        set_arg_bytes(k, i, sizeof(T), &value);
+    }
+    void enqueue(Kernel& k, Range global, Range local, Work work);
+};
+
+} // namespace clvr

@@ -1,0 +1,26 @@
+// The one error type of clvr: thrown inside, caught once in main().
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace clvr {
+
+/// What went wrong, as the program's exit code (DESIGN.md section 4 "Errors").
+enum class ErrorKind : int { usage = 2, input = 3, device = 4, memory = 5, internal = 6, interrupted = 130 };
+
+/// One line that says what was wrong, what was expected and what to try; `where` names the file, option, device or OpenCL call (may be empty).
+class Error : public std::runtime_error {
+public:
+    Error(ErrorKind kind, const std::string& what, std::string where = {}) : std::runtime_error(what), kind_(kind), where_(std::move(where)) {}
+    ErrorKind kind() const { return kind_; }
+    int exit_code() const { return static_cast<int>(kind_); }
+    const std::string& where() const { return where_; }
+    /// "where: what", or "what" when there is no where.
+    std::string line() const { return where_.empty() ? what() : where_ + ": " + what(); }
+
+private:
+    ErrorKind kind_;
+    std::string where_;
+};
+
+} // namespace clvr

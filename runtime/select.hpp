@@ -1,0 +1,20 @@
+// Which device to use, and why (DESIGN.md section 4, "Device selector").
+#pragma once
+#include "runtime/facts.hpp"
+
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+struct Selection {
+    std::vector<DeviceFacts> devices; ///< one or more; sub-devices share their parent's context
+    std::string rule;                 ///< one sentence: which rule decided
+};
+
+/// Resolves the selector: `selector` if not empty, else CLVR_DEVICE, else what was remembered, else the fastest by a short probe whose answer is
+/// stored per device list and driver version. A selector is an index, `cpu`, `gpu`, part of a name, `cpu/2`, or several joined by `+`.
+/// Throws Error{device} when nothing matches or a name matches several (the message lists them), or when there is no platform or no device.
+Selection select_devices(const std::string& selector = {});
+
+} // namespace clvr
