@@ -1,0 +1,1 @@
+// The `clvr` program: registers the subcommands, catches Error once.
