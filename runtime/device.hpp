@@ -33,6 +33,13 @@ struct Work {
 class Buffer {
 public:
     Buffer() = default;
+    Buffer(Buffer&& other) noexcept { *this = std::move(other); }
+    Buffer& operator=(Buffer&& other) noexcept {
+        handle_ = std::move(other.handle_);
+        credit_ = std::move(other.credit_);
+        bytes_ = std::exchange(other.bytes_, 0);
+        return *this;
+    }
     std::size_t bytes() const { return bytes_; }
     explicit operator bool() const { return bytes_ != 0; }
     const cl::Buffer& handle() const { return handle_; }
@@ -82,7 +89,8 @@ public:
     std::size_t peak_bytes() const;
     void set_memory_limit(std::size_t bytes);
 
-    /// Allocates device memory (at least 1 byte). `label` names it in the error. Throws Error{memory} before the driver is asked when it cannot fit.
+    /// Allocates device memory (at least 1 byte). `label` names it in the error. Throws Error{memory} before the driver is asked when it
+    /// cannot fit.
     Buffer buffer(std::size_t bytes, std::string_view label);
 
     /// Blocking transfers, bounds-checked; offsets and sizes in bytes.

@@ -8,10 +8,12 @@ namespace clvr {
 /// What went wrong, as the program's exit code (DESIGN.md section 4 "Errors").
 enum class ErrorKind : int { usage = 2, input = 3, device = 4, memory = 5, internal = 6, interrupted = 130 };
 
-/// One line that says what was wrong, what was expected and what to try; `where` names the file, option, device or OpenCL call (may be empty).
+/// One line that says what was wrong, what was expected and what to try; `where` names the file, option, device or OpenCL call (may be
+/// empty).
 class Error : public std::runtime_error {
 public:
-    Error(ErrorKind kind, const std::string& what, std::string where = {}) : std::runtime_error(what), kind_(kind), where_(std::move(where)) {}
+    Error(ErrorKind kind, const std::string& what, std::string where = {})
+        : std::runtime_error(what), kind_(kind), where_(std::move(where)) {}
     ErrorKind kind() const { return kind_; }
     int exit_code() const { return static_cast<int>(kind_); }
     const std::string& where() const { return where_; }

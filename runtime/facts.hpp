@@ -13,15 +13,15 @@ enum class DeviceType { cpu, gpu, accelerator };
 /// What a device says of itself, read once. Sizes in bytes.
 struct DeviceFacts {
     cl::Device handle;
-    int index = -1;          ///< position in the list of all devices, platforms in order; what `--device N` means
-    int sub_device = -1;     ///< which part of a divided root device, -1 for a root device
-    int sub_devices = 0;     ///< into how many equal parts the root was divided (0: not divided)
-    cl::Context context;     ///< sub-devices share their parent's context; empty for a root device until opened
+    int index = -1;      ///< position in the list of all devices, platforms in order; what `--device N` means
+    int sub_device = -1; ///< which part of a divided root device, -1 for a root device
+    int sub_devices = 0; ///< into how many equal parts the root was divided (0: not divided)
+    cl::Context context; ///< sub-devices share their parent's context; empty for a root device until opened
     std::string platform, platform_version, vendor, name, version, driver_version, opencl_c_version;
     DeviceType type = DeviceType::cpu;
     bool available = false, has_compiler = false;
-    bool simulator = false;  ///< an interpreter such as Oclgrind: never chosen by default, nor by `cpu` or `gpu`
-    bool pocl = false;       ///< PoCL keeps its own program cache and aborts on broken binaries
+    bool simulator = false; ///< an interpreter such as Oclgrind: never chosen by default, nor by `cpu` or `gpu`
+    bool pocl = false;      ///< PoCL keeps its own program cache and aborts on broken binaries
     unsigned compute_units = 0, clock_mhz = 0, native_float_width = 1, max_sub_devices = 0;
     std::size_t global_bytes = 0, max_alloc_bytes = 0, local_bytes = 0, max_work_group = 1;
     std::size_t max_work_item[3] = {1, 1, 1};
@@ -34,7 +34,8 @@ struct PlatformFacts {
     std::vector<DeviceFacts> devices; ///< may be empty: a platform without devices is a fact, too
 };
 
-/// Lists all platforms, in the loader's order. No platform at all gives an empty vector. Never throws for a broken platform: it is listed without devices.
+/// Lists all platforms, in the loader's order. No platform at all gives an empty vector. Never throws for a broken platform: it is listed
+/// without devices.
 std::vector<PlatformFacts> list_platforms();
 
 /// All devices of all platforms, flat, `index` filled.

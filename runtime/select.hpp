@@ -12,9 +12,10 @@ struct Selection {
     std::string rule;                 ///< one sentence: which rule decided
 };
 
-/// Resolves the selector: `selector` if not empty, else CLVR_DEVICE, else what was remembered, else the fastest by a short probe whose answer is
-/// stored per device list and driver version. A selector is an index, `cpu`, `gpu`, part of a name, `cpu/2`, or several joined by `+`.
-/// Throws Error{device} when nothing matches or a name matches several (the message lists them), or when there is no platform or no device.
+/// Resolves the selector: `selector` if not empty, else CLVR_DEVICE, else what was remembered, else the fastest by a short probe whose
+/// answer is stored per device list and driver version. A selector is an index, `cpu`, `gpu`, part of a name, `cpu/2`, or several joined by
+/// `+`. Throws Error{device} when nothing matches or a name matches several (the message lists them), or when there is no platform or no
+/// device.
 Selection select_devices(const std::string& selector = {});
 
 } // namespace clvr

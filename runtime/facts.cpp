@@ -1,0 +1,104 @@
+#include "runtime/facts.hpp"
+
+#include "runtime/check.hpp"
+#include "runtime/quirks.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <mutex>
+
+namespace clvr {
+namespace {
+
+/// Drivers pad their texts with blanks and a terminating zero.
+std::string trimmed(std::string text) {
+    const char* blank = " \t\n\r";
+    text.erase(std::min(text.find('\0'), text.size()));
+    text.erase(text.find_last_not_of(blank) + 1);
+    text.erase(0, std::min(text.find_first_not_of(blank), text.size()));
+    return text;
+}
+
+DeviceFacts facts_of(const cl::Device& device, const PlatformFacts& platform) {
+    DeviceFacts f;
+    f.handle = device;
+    f.platform = platform.name;
+    f.platform_version = platform.version;
+    f.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
+    f.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+    f.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
+    f.driver_version = trimmed(device.getInfo<CL_DRIVER_VERSION>());
+    f.opencl_c_version = trimmed(device.getInfo<CL_DEVICE_OPENCL_C_VERSION>());
+    f.simulator = quirks::oclgrind_claims_every_device_type(f.platform);
+    f.pocl = quirks::pocl_aborts_on_broken_binaries(f.platform);
+    const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
+    f.type = f.simulator || (type & CL_DEVICE_TYPE_CPU) ? DeviceType::cpu
+             : type & CL_DEVICE_TYPE_GPU                ? DeviceType::gpu
+                                                        : DeviceType::accelerator;
+    f.available = device.getInfo<CL_DEVICE_AVAILABLE>();
+    f.has_compiler = device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>();
+    f.compute_units = device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    f.clock_mhz = device.getInfo<CL_DEVICE_MAX_CLOCK_FREQUENCY>();
+    f.native_float_width = device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>();
+    f.global_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    f.max_alloc_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    f.local_bytes = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+    f.max_work_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+    const auto items = device.getInfo<CL_DEVICE_MAX_WORK_ITEM_SIZES>();
+    std::copy_n(items.begin(), std::min<std::size_t>(items.size(), 3), f.max_work_item);
+    cl_bool unified = CL_FALSE; // deprecated since 2.0, but the only question that 1.2 has for it
+    clGetDeviceInfo(device(), CL_DEVICE_HOST_UNIFIED_MEMORY, sizeof unified, &unified, nullptr);
+    f.unified_memory = unified == CL_TRUE;
+    const cl_device_fp_config config = device.getInfo<CL_DEVICE_SINGLE_FP_CONFIG>();
+    f.claims_fma = config & CL_FP_FMA;
+    f.claims_correct_divide_sqrt = config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
+    f.claims_denormals = config & CL_FP_DENORM;
+    const auto partitions = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
+    const bool equally = std::find(partitions.begin(), partitions.end(), CL_DEVICE_PARTITION_EQUALLY) != partitions.end();
+    f.max_sub_devices = equally ? std::min(device.getInfo<CL_DEVICE_PARTITION_MAX_SUB_DEVICES>(), f.compute_units) : 0;
+    return f;
+}
+
+PlatformFacts facts_of(const cl::Platform& handle) {
+    PlatformFacts platform;
+    try {
+        platform.name = trimmed(handle.getInfo<CL_PLATFORM_NAME>());
+        platform.vendor = trimmed(handle.getInfo<CL_PLATFORM_VENDOR>());
+        platform.version = trimmed(handle.getInfo<CL_PLATFORM_VERSION>());
+        std::vector<cl::Device> devices;
+        handle.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+        for (const cl::Device& device : devices) platform.devices.push_back(facts_of(device, platform));
+    } catch (const cl::Error& error) {
+        spdlog::warn("OpenCL platform \"{}\" is broken: {}", platform.name, translated(error, {}).line());
+    }
+    return platform;
+}
+
+} // namespace
+
+std::vector<PlatformFacts> list_platforms() {
+    static std::once_flag once;
+    std::call_once(once, quirks::pocl_hides_devices_without_writable_cache);
+    std::vector<cl::Platform> handles;
+    try {
+        cl::Platform::get(&handles);
+    } catch (const cl::Error& error) {
+        if (error.err() != -1001) spdlog::warn("{}", translated(error, "listing OpenCL platforms").line()); // -1001: the loader found none
+    }
+    std::vector<PlatformFacts> platforms;
+    int index = 0;
+    for (const cl::Platform& handle : handles) {
+        platforms.push_back(facts_of(handle));
+        for (DeviceFacts& device : platforms.back().devices) device.index = index++;
+    }
+    return platforms;
+}
+
+std::vector<DeviceFacts> list_devices() {
+    std::vector<DeviceFacts> devices;
+    for (const PlatformFacts& platform : list_platforms()) devices.insert(devices.end(), platform.devices.begin(), platform.devices.end());
+    return devices;
+}
+
+} // namespace clvr

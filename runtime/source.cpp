@@ -1,0 +1,153 @@
+#include "runtime/source.hpp"
+
+#include "runtime/embedded.hpp"
+#include "runtime/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <sstream>
+
+namespace clvr {
+namespace fs = std::filesystem;
+namespace {
+
+class Expander {
+public:
+    explicit Expander(const ReadKernelFile& read) : read_(read) {}
+
+    Source expand(const std::string& path) {
+        const auto text = read_(path);
+        if (!text) throw Error(ErrorKind::input, "there is no such kernel file", path);
+        file(path, *text, false);
+        return std::move(source_);
+    }
+
+private:
+    enum class Seen { conditionally, always, open };
+    const ReadKernelFile& read_;
+    Source source_;
+    std::map<std::string, Seen> seen_;
+
+    void line(const std::string& text, const std::string& path, int number) {
+        source_.text += text + '\n';
+        source_.origins.push_back({path, number});
+    }
+
+    void file(const std::string& path, const std::string& text, bool conditional) {
+        static const std::regex include(R"re(^\s*#\s*include\s*"([^"]+)".*$)re"), opens(R"(^\s*#\s*if.*$)"), closes(R"(^\s*#\s*endif.*$)");
+        seen_[path] = Seen::open;
+        line(fmt::format("#line 1 \"{}\"", path), path, 1);
+        std::istringstream lines(text);
+        std::string current;
+        int depth = 0;
+        for (int number = 1; std::getline(lines, current); ++number) {
+            if (!current.empty() && current.back() == '\r') current.pop_back();
+            std::smatch match;
+            if (std::regex_match(current, opens)) ++depth;
+            if (std::regex_match(current, closes)) --depth;
+            if (!std::regex_match(current, match, include) || !included(path, match[1].str(), number, conditional || depth > 0))
+                line(current, path, number);
+        }
+        seen_[path] = conditional ? Seen::conditionally : Seen::always;
+    }
+
+    /// False when the directive is to stay as it is.
+    bool included(const std::string& from, const std::string& name, int number, bool conditional) {
+        for (const fs::path& candidate : {fs::path(from).parent_path() / name, fs::path(name)}) {
+            const std::string path = candidate.lexically_normal().generic_string();
+            if (path.compare(0, 2, "..") == 0) continue; // outside the root
+            const auto text = read_(path);
+            if (!text) continue;
+            const auto seen = seen_.find(path);
+            if (seen != seen_.end() && seen->second != Seen::conditionally) {
+                line("", from, number); // keeps the count of lines
+                return true;
+            }
+            const std::string guard = guard_of(path);
+            line("#ifndef " + guard, from, number);
+            line("#define " + guard, from, number);
+            file(path, *text, conditional);
+            line("#endif", from, number);
+            line(fmt::format("#line {} \"{}\"", number + 1, from), from, number);
+            return true;
+        }
+        if (conditional) return false;
+        throw Error(ErrorKind::input,
+                    fmt::format("#include \"{}\" names no kernel file, neither beside this one nor under the root of the kernels", name),
+                    fmt::format("{}:{}", from, number));
+    }
+
+    static std::string guard_of(const std::string& path) {
+        std::string guard = "CLVR_INCLUDED_" + path;
+        std::replace_if(
+            guard.begin(), guard.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
+        return guard;
+    }
+};
+
+std::string& kernel_dir() {
+    static std::string folder = [] {
+        const char* variable = std::getenv("CLVR_KERNEL_DIR");
+        return std::string(variable ? variable : "");
+    }();
+    return folder;
+}
+
+void require_folder(const std::string& folder, const char* where) {
+    std::error_code failed;
+    if (!fs::is_directory(folder, failed))
+        throw Error(ErrorKind::usage, fmt::format("\"{}\" is not a folder; give one with the layout of kernels/", folder), where);
+}
+
+} // namespace
+
+Source expand_source(const std::string& path, const ReadKernelFile& read) { return Expander(read).expand(path); }
+
+std::string located_log(const std::string& log, const Source& source, bool counts_whole_text) {
+    if (!counts_whole_text) return log;
+    static const std::regex position(R"(^([^\s:]*):(\d{1,9})(:.*)$)");
+    std::istringstream lines(log);
+    std::string current, result;
+    while (std::getline(lines, current)) {
+        std::smatch match;
+        if (std::regex_match(current, match, position)) {
+            const std::size_t number = std::stoul(match[2].str());
+            if (number >= 1 && number <= source.origins.size()) {
+                const Source::Origin& origin = source.origins[number - 1];
+                current = fmt::format("{}:{}{}", origin.file, origin.line, match[3].str());
+            }
+        }
+        result += current + '\n';
+    }
+    return result;
+}
+
+void set_kernel_dir(const std::string& folder) {
+    if (!folder.empty()) require_folder(folder, "--kernel-dir");
+    kernel_dir() = folder;
+}
+
+std::optional<std::string> read_kernel_file(const std::string& path) {
+    if (!kernel_dir().empty()) {
+        require_folder(kernel_dir(), "CLVR_KERNEL_DIR");
+        const fs::path replacement = fs::path(kernel_dir()) / path;
+        std::error_code failed;
+        if (fs::is_regular_file(replacement, failed)) {
+            std::ifstream file(replacement, std::ios::binary);
+            if (!file) throw Error(ErrorKind::input, "cannot be read; check its permissions", replacement.string());
+            return std::string(std::istreambuf_iterator<char>(file), {});
+        }
+    }
+    const auto found = embedded_kernels().find(path);
+    if (found == embedded_kernels().end()) return std::nullopt;
+    return found->second;
+}
+
+} // namespace clvr
