@@ -9,10 +9,10 @@
 
 namespace clvr {
 
-/// Interpolation at index position p uses voxels i and i+1 with i = clamp(floor(p), 0, max(n-2, 0)) on each axis (one voxel: twice the same).
-/// A majorant cell (edge 16 voxels, a power of two coarser only by the rule below) holds the positions whose i >> log2(edge) is the cell;
-/// the outermost cells reach out to the border of the volume. So cell c needs voxels edge*c .. edge*c+edge, and `cells = (max(n-2,0) >> log2) + 1`.
-/// Belongs to the scene: the random numbers depend on it. Independent of brick edge, residency and device.
+/// Interpolation at index position p uses voxels i and i+1 with i = clamp(floor(p), 0, max(n-2, 0)) on each axis (one voxel: twice the
+/// same). A majorant cell (edge 16 voxels, a power of two coarser only by the rule below) holds the positions whose i >> log2(edge) is the
+/// cell; the outermost cells reach out to the border of the volume. So cell c needs voxels edge*c .. edge*c+edge, and `cells = (max(n-2,0)
+/// >> log2) + 1`. Belongs to the scene: the random numbers depend on it. Independent of brick edge, residency and device.
 struct MajorantGrid {
     int log2_edge = 4;
     Int3 cells{1, 1, 1};
@@ -26,29 +26,51 @@ int majorant_log2_edge(const Int3& dims);
 /// Ranges from the voxels (two threads; a pass over the data).
 MajorantGrid majorant_grid(const Voxels& v);
 
+/// The table index of a stored value, with the very operations of the kernels: ascending in the value even after rounding, so the index of
+/// an interpolated value lies between those of its cell's least and greatest one.
+class TableIndex {
+public:
+    explicit TableIndex(const TransferTable& table)
+        : first_(static_cast<float>(table.first)), scale_(static_cast<float>(table.index_scale())) {}
+    /// (stored - first) * scale, clamped to 0 .. 4095.
+    float operator()(float stored) const {
+        const float i = (stored - first_) * scale_, last = transfer_entries - 1;
+        return !(i > 0) ? 0 : i > last ? last : i;
+    }
+
+private:
+    float first_, scale_;
+};
+
 /// Majorant opacity of each cell, 0..1: the greatest table entry in floor(i(min)) .. ceil(i(max)), i the table index clamped to the table.
 /// Milliseconds: reads ranges, not voxels.
 std::vector<float> majorants(const MajorantGrid& grid, const TransferTable& table);
 
-/// Where each brick lies. Brick edge 2^log2_edge voxels plus a one-voxel apron at its upper side, cropped to the volume: brick b holds voxels
-/// edge*b .. min(edge*b+edge, n-1), x fastest, rows and slices packed (stride of x: its length). An axis of one voxel stores it twice.
+/// Where each brick lies. Brick edge 2^log2_edge voxels plus a one-voxel apron at its upper side, cropped to the volume: brick b holds
+/// voxels edge*b .. min(edge*b+edge, n-1), x fastest, rows and slices packed (stride of x: its length). An axis of one voxel stores it
+/// twice.
 struct BrickLayout {
     int log2_edge = 4;
     Int3 bricks{1, 1, 1};
     Int3 dims{1, 1, 1};
-    int pools = 1;                          ///< 1, 2, 4 or 8 buffers
-    std::vector<std::uint32_t> offset;      ///< [bricks] in voxels from the pool's start, `absent` for a brick left out
-    std::vector<std::uint32_t> pool;        ///< [bricks]
-    std::vector<std::size_t> pool_bytes;    ///< [pools]
+    int pools = 1;                       ///< 1, 2, 4 or 8 buffers
+    std::vector<std::uint32_t> offset;   ///< [bricks] in voxels from the pool's start, `absent` for a brick left out
+    std::vector<std::uint32_t> pool;     ///< [bricks]
+    std::vector<std::size_t> pool_bytes; ///< [pools]
     static constexpr std::uint32_t absent = 0xffffffffu;
-    std::size_t stored_bytes() const;       ///< sum of pool_bytes
-    std::size_t present() const;            ///< bricks that are stored
+    std::size_t stored_bytes() const;        ///< sum of pool_bytes
+    std::size_t present() const;             ///< bricks that are stored
+    Int3 brick_low(std::size_t brick) const; ///< its first voxel
+    /// Voxels along each axis: min(edge + 1, max(n, 2) - edge*b).
+    Int3 brick_length(std::size_t brick) const;
+    std::size_t brick_voxels(std::size_t brick) const;
 };
 
 /// Lays out the bricks that are needed when cells with majorant > 0 are visible: those that a sample in such a cell, or a gradient tap one
-/// voxel away from it (one voxel along each axis), can touch. `log2_edge` <= the grid's. Pools are at most `max_pool_bytes` each.
+/// voxel away from it (one voxel along each axis), can touch. `log2_edge` is 3 to 6. Pools are at most `max_pool_bytes` each.
 /// Throws Error{memory} when 8 pools do not hold it.
-BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge, std::size_t max_pool_bytes);
+BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
+                         std::size_t max_pool_bytes);
 
 /// Copies one pool's bricks out of the voxels, in pieces of at most `piece_bytes`: calls sink(bytes, size, offset_bytes_in_pool) so that
 /// the host never holds a second copy of the volume.

@@ -1,0 +1,185 @@
+// Which bricks are stored, where each lies, and their contents.
+#include "host/volume/bricks.hpp"
+#include "host/volume/slabs.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace clvr {
+namespace {
+
+/// Bricks that hold any of the interpolation bases that a cell can ask for.
+class NeededBricks {
+public:
+    NeededBricks(const Int3& dims, const Int3& bricks, int log2_edge) : dims_(dims), bricks_(bricks), log2_edge_(log2_edge) {
+        needed_.resize(static_cast<std::size_t>(bricks[0]) * bricks[1] * bricks[2]);
+    }
+    /// The bases low..high (inclusive) with a reach of one voxel along each axis in turn, clamped to the volume.
+    void mark_with_reach(const Int3& low, const Int3& high) {
+        for (int a = 0; a < 3; ++a) {
+            Int3 l = low, h = high;
+            l[a] = std::max(l[a] - 1, 0);
+            h[a] = std::min(h[a] + 1, std::max(dims_[a] - 2, 0));
+            mark(l, h);
+        }
+    }
+    bool operator[](std::size_t brick) const { return needed_[brick] != 0; }
+
+private:
+    void mark(const Int3& low, const Int3& high) {
+        for (int z = low[2] >> log2_edge_; z <= high[2] >> log2_edge_; ++z)
+            for (int y = low[1] >> log2_edge_; y <= high[1] >> log2_edge_; ++y)
+                for (int x = low[0] >> log2_edge_; x <= high[0] >> log2_edge_; ++x)
+                    needed_[(static_cast<std::size_t>(z) * bricks_[1] + y) * bricks_[0] + x] = 1;
+    }
+    Int3 dims_, bricks_;
+    int log2_edge_;
+    std::vector<char> needed_;
+};
+
+NeededBricks needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout) {
+    NeededBricks needed(layout.dims, layout.bricks, layout.log2_edge);
+    const float* majorant = cell_majorants.data();
+    for (int z = 0; z < grid.cells[2]; ++z)
+        for (int y = 0; y < grid.cells[1]; ++y)
+            for (int x = 0; x < grid.cells[0]; ++x) {
+                if (!(*majorant++ > 0)) continue;
+                Int3 low{x << grid.log2_edge, y << grid.log2_edge, z << grid.log2_edge}, high;
+                for (int a = 0; a < 3; ++a) high[a] = std::min(low[a] + (1 << grid.log2_edge) - 1, std::max(layout.dims[a] - 2, 0));
+                needed.mark_with_reach(low, high);
+            }
+    return needed;
+}
+
+/// Deals the stored bricks, in their order, to pools of at most `capacity` voxels; returns how many pools that takes.
+std::size_t deal(BrickLayout& layout, std::size_t capacity, std::size_t bytes_per_voxel) {
+    layout.pool_bytes.assign(1, 0);
+    std::size_t filled = 0;
+    for (std::size_t b = 0; b < layout.offset.size(); ++b) {
+        if (layout.offset[b] == BrickLayout::absent) continue;
+        const std::size_t voxels = layout.brick_voxels(b);
+        if (filled + voxels > capacity) {
+            layout.pool_bytes.push_back(0);
+            filled = 0;
+        }
+        layout.pool[b] = static_cast<std::uint32_t>(layout.pool_bytes.size() - 1);
+        layout.offset[b] = static_cast<std::uint32_t>(filled);
+        filled += voxels;
+        layout.pool_bytes.back() = filled * bytes_per_voxel;
+    }
+    return layout.pool_bytes.size();
+}
+
+/// One brick, rows and slices packed. An axis of one voxel stores it twice.
+template <class T>
+void pack_brick(const Voxels& v, const BrickLayout& layout, std::size_t brick, T* to) {
+    const Int3 low = layout.brick_low(brick), length = layout.brick_length(brick);
+    for (int z = 0; z < length[2]; ++z)
+        for (int y = 0; y < length[1]; ++y) {
+            const std::size_t row_z = std::min(low[2] + z, v.dims[2] - 1), row_y = std::min(low[1] + y, v.dims[1] - 1);
+            const T* row = v.data<T>() + (row_z * v.dims[1] + row_y) * v.dims[0] + low[0];
+            if (v.dims[0] == 1)
+                to[0] = to[1] = row[0];
+            else
+                std::memcpy(to, row, length[0] * sizeof(T));
+            to += length[0];
+        }
+}
+
+} // namespace
+
+std::size_t BrickLayout::stored_bytes() const { return std::accumulate(pool_bytes.begin(), pool_bytes.end(), std::size_t{0}); }
+
+std::size_t BrickLayout::present() const { return offset.size() - std::count(offset.begin(), offset.end(), absent); }
+
+Int3 BrickLayout::brick_low(std::size_t brick) const {
+    const std::size_t row = brick / bricks[0];
+    return {static_cast<int>(brick % bricks[0]) << log2_edge, static_cast<int>(row % bricks[1]) << log2_edge,
+            static_cast<int>(row / bricks[1]) << log2_edge};
+}
+
+Int3 BrickLayout::brick_length(std::size_t brick) const {
+    const Int3 low = brick_low(brick);
+    Int3 length;
+    for (int a = 0; a < 3; ++a) length[a] = std::min((1 << log2_edge) + 1, std::max(dims[a], 2) - low[a]);
+    return length;
+}
+
+std::size_t BrickLayout::brick_voxels(std::size_t brick) const {
+    const Int3 length = brick_length(brick);
+    return static_cast<std::size_t>(length[0]) * length[1] * length[2];
+}
+
+BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
+                         std::size_t max_pool_bytes) {
+    BrickLayout layout;
+    layout.log2_edge = log2_edge;
+    layout.dims = v.dims;
+    for (int a = 0; a < 3; ++a) layout.bricks[a] = (std::max(v.dims[a] - 2, 0) >> log2_edge) + 1;
+    const std::size_t count = static_cast<std::size_t>(layout.bricks[0]) * layout.bricks[1] * layout.bricks[2];
+    layout.offset.assign(count, BrickLayout::absent);
+    layout.pool.assign(count, 0);
+
+    const NeededBricks needed = needed_bricks(grid, cell_majorants, layout);
+    std::size_t total = 0, largest = 0;
+    for (std::size_t b = 0; b < count; ++b)
+        if (needed[b]) {
+            layout.offset[b] = 0;
+            total += layout.brick_voxels(b);
+            largest = std::max(largest, layout.brick_voxels(b));
+        }
+
+    const std::size_t bytes = voxel_bytes(v.type);
+    const std::size_t capacity = std::min(max_pool_bytes / bytes, std::size_t{1} << 31);
+    const auto too_big = [&] {
+        return Error(
+            ErrorKind::memory,
+            fmt::format("the visible part of the volume takes {:.1f} MiB on the device, more than 8 buffers of at most {:.1f} MiB; try a "
+                        "transfer function that shows less, a larger --memory, or another --device",
+                        total * bytes / 1048576.0, capacity * bytes / 1048576.0));
+    };
+    if (largest > capacity) throw too_big();
+    const std::size_t used = deal(layout, capacity, bytes);
+    if (used > 8) throw too_big();
+    while (layout.pools < static_cast<int>(used)) layout.pools *= 2;
+    // Dealt again evenly: a pool that closes holds more than total / pools, so no more pools are taken.
+    deal(layout, std::min(capacity, total / layout.pools + largest), bytes);
+    layout.pool_bytes.resize(layout.pools, 0);
+    return layout;
+}
+
+void pack_pool(const Voxels& v, const BrickLayout& layout, int pool, std::size_t piece_bytes, const PackSink& sink) {
+    const std::size_t bytes = voxel_bytes(v.type);
+    std::vector<std::size_t> bricks; // of this piece, consecutive in the pool
+    std::vector<unsigned char> piece;
+    std::size_t piece_offset = 0, piece_size = 0;
+    const auto flush = [&] {
+        if (bricks.empty()) return;
+        piece.resize(piece_size);
+        for_slabs(static_cast<int>(bricks.size()), [&](int first, int last) {
+            with_voxel_type(v.type, [&](auto sample) {
+                using T = decltype(sample);
+                for (int i = first; i < last; ++i)
+                    pack_brick(v, layout, bricks[i], reinterpret_cast<T*>(piece.data() + layout.offset[bricks[i]] * bytes - piece_offset));
+            });
+        });
+        for (std::size_t at = 0; at < piece_size; at += piece_bytes)
+            sink(piece.data() + at, std::min(piece_bytes, piece_size - at), piece_offset + at);
+        piece_offset += piece_size;
+        piece_size = 0;
+        bricks.clear();
+    };
+    for (std::size_t b = 0; b < layout.offset.size(); ++b) {
+        if (layout.offset[b] == BrickLayout::absent || layout.pool[b] != static_cast<std::uint32_t>(pool)) continue;
+        const std::size_t size = layout.brick_voxels(b) * bytes;
+        if (piece_size + size > piece_bytes) flush();
+        bricks.push_back(b);
+        piece_size += size;
+    }
+    flush();
+}
+
+} // namespace clvr
