@@ -1,0 +1,36 @@
+#!/bin/bash
+# Installs the Debian packages that are missing (Debian 12 or newer). Usage: install_packages.sh [build|test]
+#   build   what the program needs to be built and to run (default)
+#   test    the same, and what the tests and lints need
+# Asks the network only when something is missing; uses sudo when not root.
+set -euo pipefail
+
+build=(build-essential cmake ninja-build pkg-config
+    ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd           # OpenCL, and a device that every machine has
+    libinsighttoolkit5-dev zlib1g-dev                                 # volume files
+    libopenexr-dev libpng-dev libstb-dev                              # pictures
+    libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev) # command line, JSON, text, checksums
+test=(libgtest-dev libgmock-dev clang-14 clang-format-14 gcovr oclgrind mesa-opencl-icd)
+
+case ${1:-build} in
+    build) wanted=("${build[@]}") ;;
+    test) wanted=("${build[@]}" "${test[@]}") ;;
+    *) echo "usage: $0 [build|test]" >&2; exit 2 ;;
+esac
+
+command -v dpkg-query >/dev/null || { echo "$0: no dpkg here; install by hand what corresponds to: ${wanted[*]}" >&2; exit 1; }
+installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
+mapfile -t missing < <(comm -23 <(printf '%s\n' "${wanted[@]}" | sort) <(sort -u <<<"$installed"))
+[ "${#missing[@]}" -gt 0 ] || exit 0
+
+root=()
+if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || { echo "$0: run as root: apt-get install ${missing[*]}" >&2; exit 1; }
+    root=(sudo)
+fi
+echo "installing ${#missing[@]} packages: ${missing[*]}"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+quietly() { "$@" >"$log" 2>&1 || { cat "$log" >&2; return 1; }; }
+quietly "${root[@]}" apt-get update -q
+quietly "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"

@@ -1,0 +1,31 @@
+#!/bin/bash
+# Refuses includes across layers (DESIGN.md section 2: who may include whom). Usage: layers.sh ROOT
+set -euo pipefail
+cd "$1"
+status=0
+complain() { [ -z "$2" ] || { printf '%s:\n%s\n' "$1" "$2"; status=1; }; }
+
+# only FOLDER PREFIX...: quoted includes in FOLDER start with one of the prefixes (paths from the root; in kernels/, from there).
+only() {
+    local folder=$1 allowed
+    shift
+    allowed=$(IFS='|'; echo "$*")
+    [ ! -d "$folder" ] || complain "$folder may include $* only" \
+        "$(grep -rnP '^\s*#\s*include\s*"(?!('"$allowed"'))' "$folder" || true)"
+}
+# nowhere_but FILES PATTERN: the pattern stands in those files (an extended regular expression over paths) and nowhere else in the product.
+nowhere_but() { complain "only in $1" "$(grep -rnE "$2" runtime host | grep -vE "^($1):" || true)"; }
+
+only runtime runtime/
+only host/volume runtime/ host/volume/ kernels/shared/
+only host/render runtime/ host/volume/ host/render/ kernels/shared/
+only host/io runtime/ host/volume/ host/render/ host/io/ kernels/shared/
+only host/cli runtime/ host/ kernels/shared/
+only kernels/shared shared/
+only kernels/lib shared/ lib/
+only kernels shared/ lib/
+
+nowhere_but 'runtime/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'
+nowhere_but 'host/io/[a-z_]*\.cpp' '#\s*include\s*[<"](itk|ImfF?|png\.h|stb_|zlib\.h)'
+complain "the runtime knows no volume, no image, no network" "$(grep -rniE 'volume|brick|voxel|guide|denoise' runtime || true)"
+exit $status

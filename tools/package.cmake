@@ -1,0 +1,36 @@
+# install() and the relocatable tarball: bin/clvr finds the libraries it was built with in lib/clvr beside it, on any x86-64 Linux with
+# glibc 2.36 and GCC 12's runtime. Not carried: glibc, libstdc++, libgcc_s, and OpenCL drivers (those belong to the machine).
+# DT_RPATH, not DT_RUNPATH: it also serves the libraries that the libraries need. tools/check_package.sh tries the tarball on a bare Debian 13.
+set_target_properties(clvr PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/clvr")
+target_link_options(clvr PRIVATE LINKER:--disable-new-dtags)
+
+install(TARGETS clvr RUNTIME_DEPENDENCY_SET clvr_libraries RUNTIME DESTINATION bin)
+install(
+  RUNTIME_DEPENDENCY_SET clvr_libraries
+  PRE_EXCLUDE_REGEXES "^ld-linux" "^lib(c|m|dl|rt|pthread|resolv|stdc\\+\\+|gcc_s)\\.so"
+  LIBRARY DESTINATION lib/clvr)
+install(FILES LICENSE README.md DESTINATION share/doc/clvr)
+
+# The licence of each carried library, as its Debian package states it.
+install(CODE [[
+  set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
+  find_program(DPKG_QUERY dpkg-query)
+  file(GLOB libraries "${prefix}/lib/clvr/*.so*")
+  foreach(library IN LISTS libraries)
+    cmake_path(GET library FILENAME name)
+    if(DPKG_QUERY AND NOT IS_SYMLINK "${library}")
+      execute_process(COMMAND ${DPKG_QUERY} -S "*/${name}" OUTPUT_VARIABLE owner ERROR_QUIET)
+      string(REGEX MATCH "^[^:,\n]+" package "${owner}")
+      if(EXISTS "/usr/share/doc/${package}/copyright")
+        file(COPY_FILE "/usr/share/doc/${package}/copyright" "${prefix}/share/doc/clvr/${package}.copyright" ONLY_IF_DIFFERENT)
+      endif()
+    endif()
+  endforeach()
+]])
+
+set(CPACK_GENERATOR TGZ)
+set(CPACK_PACKAGE_VENDOR clvr)
+set(CPACK_PACKAGE_FILE_NAME clvr-${PROJECT_VERSION}-linux-${CMAKE_SYSTEM_PROCESSOR})
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+include(CPack)
