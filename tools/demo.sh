@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/install_packages.sh build
-[ -f build/demo/build.ninja ] || cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DCLVR_TESTS=OFF
-cmake --build build/demo
-build/demo/clvr render demo:head -o head.png "$@"
-echo "the picture is $PWD/head.png; for your own volume: $PWD/build/demo/clvr render VOLUME -o OUT.png"
+cmake --preset release -DCLVR_TESTS=OFF
+cmake --build --preset release
+build/release/clvr render demo:head -o head.png "$@"
+echo "The picture is $PWD/head.png. For a volume of your own: $PWD/build/release/clvr render VOLUME -o OUT.png"

@@ -1,5 +1,5 @@
-# Writes OUT: a C++ file with every file of FILES (semicolon list) as a string under its path relative to ROOT. See runtime/embedded.hpp.
-set(text "// Made by tools/embed.cmake from kernels/; do not edit.\n#include \"runtime/embedded.hpp\"\nnamespace clvr {\nconst std::map<std::string, std::string>& embedded_kernels() {\n    static const std::map<std::string, std::string> files{\n")
+# Writes OUT: a C++ file with FUNCTION, declared in HEADER, that holds every file of FILES (semicolon list) as a string under its path relative to ROOT.
+set(text "// Made by tools/embed.cmake from ${ROOT}; do not edit.\n#include \"${HEADER}\"\nnamespace clvr {\nconst std::map<std::string, std::string>& ${FUNCTION}() {\n    static const std::map<std::string, std::string> files{\n")
 foreach(file IN LISTS FILES)
   file(RELATIVE_PATH name ${ROOT} ${file})
   file(READ ${file} hex HEX)

@@ -3,6 +3,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/install_packages.sh test
-cmake --preset release
+cmake --preset release -DCLVR_TESTS=ON
 cmake --build --preset release
 ctest --preset release -j "$(nproc)" "$@"
