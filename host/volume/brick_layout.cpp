@@ -7,49 +7,32 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <numeric>
+#include <utility>
 
 namespace clvr {
 namespace {
 
-/// Bricks that hold any of the interpolation bases that a cell can ask for.
-class NeededBricks {
-public:
-    NeededBricks(const Int3& dims, const Int3& bricks, int log2_edge) : dims_(dims), bricks_(bricks), log2_edge_(log2_edge) {
-        needed_.resize(static_cast<std::size_t>(bricks[0]) * bricks[1] * bricks[2]);
-    }
-    /// The bases low..high (inclusive) with a reach of one voxel along each axis in turn, clamped to the volume.
-    void mark_with_reach(const Int3& low, const Int3& high) {
-        for (int a = 0; a < 3; ++a) {
-            Int3 l = low, h = high;
-            l[a] = std::max(l[a] - 1, 0);
-            h[a] = std::min(h[a] + 1, std::max(dims_[a] - 2, 0));
-            mark(l, h);
-        }
-    }
-    bool operator[](std::size_t brick) const { return needed_[brick] != 0; }
-
-private:
-    void mark(const Int3& low, const Int3& high) {
-        for (int z = low[2] >> log2_edge_; z <= high[2] >> log2_edge_; ++z)
-            for (int y = low[1] >> log2_edge_; y <= high[1] >> log2_edge_; ++y)
-                for (int x = low[0] >> log2_edge_; x <= high[0] >> log2_edge_; ++x)
-                    needed_[(static_cast<std::size_t>(z) * bricks_[1] + y) * bricks_[0] + x] = 1;
-    }
-    Int3 dims_, bricks_;
-    int log2_edge_;
-    std::vector<char> needed_;
-};
-
-NeededBricks needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout) {
-    NeededBricks needed(layout.dims, layout.bricks, layout.log2_edge);
+/// Which bricks hold an interpolation base that a visible cell can ask for: its own, with a reach of one voxel all around.
+std::vector<char> needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout) {
+    std::vector<char> needed(layout.offset.size());
+    const auto bricks_of_cell = [&](int cell, int axis) {
+        const int first = cell << grid.log2_edge, last_base = std::max(layout.dims[axis] - 2, 0);
+        return std::pair{std::max(first - 1, 0) >> layout.log2_edge,
+                         std::min(first + (1 << grid.log2_edge), last_base) >> layout.log2_edge};
+    };
     const float* majorant = cell_majorants.data();
-    for (int z = 0; z < grid.cells[2]; ++z)
-        for (int y = 0; y < grid.cells[1]; ++y)
-            for (int x = 0; x < grid.cells[0]; ++x) {
+    for (int cell_z = 0; cell_z < grid.cells[2]; ++cell_z)
+        for (int cell_y = 0; cell_y < grid.cells[1]; ++cell_y)
+            for (int cell_x = 0; cell_x < grid.cells[0]; ++cell_x) {
                 if (!(*majorant++ > 0)) continue;
-                Int3 low{x << grid.log2_edge, y << grid.log2_edge, z << grid.log2_edge}, high;
-                for (int a = 0; a < 3; ++a) high[a] = std::min(low[a] + (1 << grid.log2_edge) - 1, std::max(layout.dims[a] - 2, 0));
-                needed.mark_with_reach(low, high);
+                const auto [x0, x1] = bricks_of_cell(cell_x, 0);
+                const auto [y0, y1] = bricks_of_cell(cell_y, 1);
+                const auto [z0, z1] = bricks_of_cell(cell_z, 2);
+                for (int z = z0; z <= z1; ++z)
+                    for (int y = y0; y <= y1; ++y) {
+                        char* row = needed.data() + (static_cast<std::size_t>(z) * layout.bricks[1] + y) * layout.bricks[0];
+                        std::fill(row + x0, row + x1 + 1, char{1});
+                    }
             }
     return needed;
 }
@@ -123,7 +106,7 @@ BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::v
     layout.offset.assign(count, BrickLayout::absent);
     layout.pool.assign(count, 0);
 
-    const NeededBricks needed = needed_bricks(grid, cell_majorants, layout);
+    const std::vector<char> needed = needed_bricks(grid, cell_majorants, layout);
     std::size_t total = 0, largest = 0;
     for (std::size_t b = 0; b < count; ++b)
         if (needed[b]) {

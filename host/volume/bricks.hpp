@@ -26,20 +26,18 @@ int majorant_log2_edge(const Int3& dims);
 /// Ranges from the voxels (two threads; a pass over the data).
 MajorantGrid majorant_grid(const Voxels& v);
 
-/// The table index of a stored value, with the very operations of the kernels: ascending in the value even after rounding, so the index of
-/// an interpolated value lies between those of its cell's least and greatest one.
-class TableIndex {
-public:
+/// The table index of a stored value, with the very operations and constants of the kernels: it ascends with the value even after rounding,
+/// so the index of an interpolated value lies between those of its cell's least and greatest one. The subtraction comes first: a volume's
+/// lowest value, where tables often begin, then has exactly the index 0 and air stays empty.
+struct TableIndex {
     explicit TableIndex(const TransferTable& table)
-        : first_(static_cast<float>(table.first)), scale_(static_cast<float>(table.index_scale())) {}
+        : first(static_cast<float>(table.first)), scale(static_cast<float>(table.index_scale())) {}
+    float first, scale; ///< stored value of entry 0; entries per stored unit
     /// (stored - first) * scale, clamped to 0 .. 4095.
     float operator()(float stored) const {
-        const float i = (stored - first_) * scale_, last = transfer_entries - 1;
+        const float i = (stored - first) * scale, last = transfer_entries - 1;
         return !(i > 0) ? 0 : i > last ? last : i;
     }
-
-private:
-    float first_, scale_;
 };
 
 /// Majorant opacity of each cell, 0..1: the greatest table entry in floor(i(min)) .. ceil(i(max)), i the table index clamped to the table.
@@ -67,8 +65,8 @@ struct BrickLayout {
 };
 
 /// Lays out the bricks that are needed when cells with majorant > 0 are visible: those that a sample in such a cell, or a gradient tap one
-/// voxel away from it (one voxel along each axis), can touch. `log2_edge` is 3 to 6. Pools are at most `max_pool_bytes` each.
-/// Throws Error{memory} when 8 pools do not hold it.
+/// voxel away from it, can touch. The reach is a full voxel all around, so that a position that rounding puts on the far side of a cell's
+/// border is safe. `log2_edge` is 3 to 6. Pools are at most `max_pool_bytes` each. Throws Error{memory} when 8 pools do not hold it.
 BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
                          std::size_t max_pool_bytes);
 

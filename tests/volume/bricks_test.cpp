@@ -96,13 +96,8 @@ TEST(Bricks, AreStoredExactlyWhereASampleOrGradientTapCanReach) {
                         for (base[0] = 0; base[0] <= std::max(dims[0] - 2, 0); ++base[0]) {
                             if (!(majorant[((base[2] >> 4) * grid.cells[1] + (base[1] >> 4)) * grid.cells[0] + (base[0] >> 4)] > 0))
                                 continue;
-                            touch(base);
-                            for (int a = 0; a < 3; ++a)
-                                for (const int step : {-1, 1}) {
-                                    Int3 tap = base;
-                                    tap[a] += step;
-                                    touch(tap);
-                                }
+                            for (int tap = 0; tap < 27; ++tap)
+                                touch({base[0] + tap % 3 - 1, base[1] + tap / 3 % 3 - 1, base[2] + tap / 9 - 1});
                         }
                 for (std::size_t b = 0; b < layout.offset.size(); ++b)
                     ASSERT_EQ(layout.offset[b] != BrickLayout::absent, reached.count(b) == 1)

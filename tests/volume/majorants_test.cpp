@@ -142,6 +142,23 @@ TEST(Majorants, ClampOutsideTheTable) {
     EXPECT_EQ(majorants(majorant_grid(v), table), std::vector<float>{0.125f});
 }
 
+TEST(Majorants, LeaveAirEmptyWhereTheTableBeginsAtItsValue) {
+    Voxels v;
+    v.type = VoxelType::f32;
+    v.dims = {1, 1, 1};
+    v.bytes.resize(4);
+    Random random(6);
+    TransferTable table;
+    for (int e = 0; e < transfer_entries; ++e) table.opacity.push_back(static_cast<float>(e));
+    for (int k = 0; k < 1000; ++k) {
+        const float air = static_cast<float>(-1000 + 2000 * uniform(random));
+        std::memcpy(v.bytes.data(), &air, 4);
+        table.first = air;
+        table.last = air + 1 + 3000 * uniform(random);
+        ASSERT_EQ(majorants(majorant_grid(v), table), std::vector<float>{0});
+    }
+}
+
 TEST(Majorants, FollowANegativeSlope) {
     Random random(3);
     Voxels v = random_volume(random, VoxelType::i16, {20, 20, 20}, -100, 100);
