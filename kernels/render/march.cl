@@ -1,0 +1,156 @@
+// The marcher: noise-free features, emission-absorption (dvr) or maximum intensity (mip) along fixed rays. One work-item a packet of pixels.
+//
+// Samples lie on the ray's own lattice t0 + (k + 1/2) step; cells without extinction are skipped in k, so skipping never moves the lattice.
+// Weights w = T (1 - exp(-sigma step)); a ray ends at T < 1e-4. Sums run over CLVR_RAYS fixed positions in the pixel and are divided once.
+#include "lib/camera.clh"
+#include "lib/packet.clh"
+
+#ifndef CLVR_RAYS
+#define CLVR_RAYS 4
+#endif
+// 0 features, 1 dvr, 2 mip
+#ifndef CLVR_MARCH
+#define CLVR_MARCH 0
+#endif
+
+#define LEAST_OPACITY 0.00390625f // features of pixels below 1/256 are constants
+
+#define END_TRANSMITTANCE 1e-4f
+
+typedef struct {
+    vfloat weight, depth, depth2, half_depth, peak; // sums of w, w d, w d^2, depth of T = 1/2; greatest stored value
+    Vec3 color, normal;                             // sums of w c, w n
+    vmask met;                                      // lanes with a visible sample
+} MarchSums;
+
+inline Vec3 add_where(vmask m, Vec3 sum, Vec3 v, vfloat w) {
+    return vec3(v_select(m, fma(w, v.x, sum.x), sum.x), v_select(m, fma(w, v.y, sum.y), sum.y), v_select(m, fma(w, v.z, sum.z), sum.z));
+}
+
+// Unit normal turned against the ray; 0 where the gradient is 0. *steepness: the gradient's length.
+inline Vec3 facing_normal(const Volume* vol, Vec3 p, Vec3 dir, vfloat* steepness) {
+    Vec3 g = world_gradient(vol, p);
+    *steepness = sqrt(inner3(g, g));
+    vfloat s = 1.0f / v_select(v_gt(*steepness, (vfloat)(0.0f)), *steepness, (vfloat)(1.0f));
+    return scaled(g, v_select(v_gt(inner3(g, dir), (vfloat)(0.0f)), -s, s));
+}
+
+// Moves the lanes of *active to their first lattice point (from *k on) in a cell with extinction; clears lanes that leave.
+inline Vec3 seek_visible(const Volume* vol, const Ray* r, vfloat t0, vfloat t1, float step, vint* k, vmask* active, vfloat* t, Int3* i) {
+    Vec3 p;
+    vmask seeking = *active;
+    do {
+        *t = fma(v_float(*k) + 0.5f, (vfloat)(step), t0);
+        *active &= v_lt(*t, t1);
+        seeking &= *active;
+        p = along(r->o, r->d, v_select(*active, *t, t0));
+        *i = clamp_position(vol->p, &p);
+        int log2_edge = vol->p->cells.w;
+        Int3 c = {i->x >> log2_edge, i->y >> log2_edge, i->z >> log2_edge};
+        seeking &= v_le(v_gather(vol->majorant, cell_index(vol->p, c)), (vfloat)(0.0f));
+        if (v_any(seeking)) {
+            Vec3 e = exits(vol->p, r, c);
+            vfloat leave = v_min(v_min(v_min(e.x, e.y), e.z), t1);
+            vint next = v_int(floor(v_max((leave - t0) / step - 0.5f, (vfloat)(0.0f)))); // at or before the first point behind the face
+            *k = v_select(seeking, v_max(*k + 1, next), *k);
+        }
+    } while (v_any(seeking));
+    return p;
+}
+
+inline void march_ray(const Volume* vol, __constant RenderParams* render, Vec3 pos_index, Vec3 dir_world, vmask lanes, MarchSums* sums) {
+    Ray ray = make_ray(vol->p, pos_index, dir_world);
+    float step = render->step, rate = -vol->p->extinction * step;
+    vfloat t0, t1, t, transmitted = (vfloat)(1.0f), half_depth = (vfloat)(1.0f);
+    clip_ray(vol->p, &ray, &t0, &t1);
+    vmask active = v_lt(t0, t1) & lanes;
+    t0 = v_select(active, t0, (vfloat)(0.0f)), t1 = v_select(active, t1, (vfloat)(0.0f));
+    vint k = (vint)(0);
+    for (;;) {
+        Int3 i;
+        Vec3 p = seek_visible(vol, &ray, t0, t1, step, &k, &active, &t, &i);
+        if (!v_any(active)) break;
+        vfloat stored = stored_value_in(vol, p, i), opacity = opacity_of(vol, stored);
+        k += 1;
+#if CLVR_MARCH == 2
+        vmask seen = active & v_gt(opacity, (vfloat)(0.0f)) & (v_not(sums->met) | v_gt(stored, sums->peak));
+        sums->peak = v_select(seen, stored, sums->peak);
+        sums->met |= seen;
+#else
+        vfloat w = v_select(active, transmitted * (1.0f - v_exp(opacity * rate)), (vfloat)(0.0f));
+        vmask seen = v_gt(w, (vfloat)(0.0f));
+        if (v_any(seen)) {
+            vfloat steepness, depth = (t - render->depth_near) * render->depth_scale;
+            Vec3 color = albedo_of(vol, stored), normal = facing_normal(vol, p, dir_world, &steepness);
+#if CLVR_MARCH == 1
+            // Lit from the eye as far as the sample acts as a surface.
+            vfloat lit = fma(surface_chance(vol->p, steepness), fma((vfloat)(-0.8f), 1.0f + inner3(normal, dir_world), (vfloat)(0.0f)), (vfloat)(1.0f));
+            color = scaled(color, lit);
+#endif
+            sums->weight += w;
+            sums->color = add_where(seen, sums->color, color, w);
+            sums->normal = add_where(seen, sums->normal, normal, w);
+            sums->depth = fma(w, depth, sums->depth);
+            sums->depth2 = fma(w * depth, depth, sums->depth2);
+            transmitted -= w;
+            half_depth = v_select(v_lt(half_depth, (vfloat)(1.0f)) | v_gt(transmitted, (vfloat)(0.5f)), half_depth, depth);
+            active &= v_ge(transmitted, (vfloat)(END_TRANSMITTANCE));
+        }
+#endif
+    }
+    sums->half_depth += half_depth;
+}
+
+// Writes planes of `stride` values at pixel - first_pixel. Features: albedo RGB, normal XYZ, depth, opacity, depth deviation, half depth. dvr, mip: R G B A.
+__kernel void march(VOLUME_ARGS, __constant RenderParams* render, uint first_pixel, uint pixels, uint stride, __global float* planes) {
+    Volume vol = VOLUME_HERE;
+    uint first = (uint)get_global_id(0) * CLVR_WIDTH;
+    if (first >= pixels) return;
+    float fx[CLVR_WIDTH], fy[CLVR_WIDTH];
+    for (int lane = 0; lane < CLVR_WIDTH; ++lane) {
+        uint2 pixel = pixel_of(first_pixel + first + (uint)lane, render->width);
+        fx[lane] = (float)pixel.x, fy[lane] = (float)pixel.y;
+    }
+    vfloat x = v_load(fx), y = v_load(fy), zero = (vfloat)(0.0f);
+    vmask lanes = v_lt(v_iota + (int)first, (vint)((int)pixels));
+    MarchSums s = {zero, zero, zero, zero, zero, {zero, zero, zero}, {zero, zero, zero}, (vmask)(0)};
+    for (int ray = 0; ray < CLVR_RAYS; ++ray) {
+        // A rotated grid: each position has its own row and column in the pixel.
+        float px = CLVR_RAYS == 1 ? 0.5f : 0.125f + 0.25f * (float)((ray * 2 + (ray >> 1)) & 3), py = CLVR_RAYS == 1 ? 0.5f : 0.125f + 0.25f * (float)ray;
+        Vec3 o, d;
+        camera_ray(render, x + px, y + py, &o, &d);
+        march_ray(&vol, render, o, d, lanes, &s);
+    }
+    float share = 1.0f / (float)CLVR_RAYS;
+#if CLVR_MARCH == 0
+    vmask seen = v_ge(s.weight * share, (vfloat)(LEAST_OPACITY));
+    vfloat divisor = v_select(seen, s.weight, (vfloat)(1.0f)), one = (vfloat)(1.0f);
+    vfloat depth = s.depth / divisor, variance = fma(-depth, depth, s.depth2 / divisor);
+    vfloat out[10] = {v_select(seen, s.color.x / divisor, one),
+                      v_select(seen, s.color.y / divisor, one),
+                      v_select(seen, s.color.z / divisor, one),
+                      v_select(seen, s.normal.x / divisor, zero),
+                      v_select(seen, s.normal.y / divisor, zero),
+                      v_select(seen, s.normal.z / divisor, zero),
+                      v_select(seen, depth, one),
+                      s.weight * share,
+                      v_select(seen, sqrt(v_max(variance, zero)), zero),
+                      v_select(seen, s.half_depth * share, one)};
+    int count = 10;
+#elif CLVR_MARCH == 1
+    vfloat out[4] = {s.color.x * share, s.color.y * share, s.color.z * share, s.weight * share};
+    int count = 4;
+#else
+    // The peak's place in the transfer function's domain, as grey.
+    vfloat grey = v_clamp(fma(s.peak, (vfloat)(volume_params->box_high.w), (vfloat)(volume_params->box_low.w)) / (float)CLVR_TABLE_LAST, zero, (vfloat)(1.0f));
+    grey = v_select(s.met, grey, zero);
+    vfloat out[4] = {grey, grey, grey, v_select(s.met, (vfloat)(1.0f), zero)};
+    int count = 4;
+#endif
+    for (int c = 0; c < count; ++c) {
+        float value[CLVR_WIDTH];
+        v_store(out[c], value);
+        for (int lane = 0; lane < CLVR_WIDTH; ++lane)
+            if (first + (uint)lane < pixels) planes[(uint)c * stride + first + (uint)lane] = value[lane];
+    }
+}

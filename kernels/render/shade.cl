@@ -1,0 +1,88 @@
+// What happens at the end of a segment: light met by a path that left the volume; else scattering, a light sample, the next direction, roulette.
+// One work-item an entry of `active`; state[entry] gets bit 0 for a path that goes on, bit 1 for a light sample to trace.
+#include "lib/light.clh"
+#include "lib/paths.clh"
+#include "lib/random.clh"
+#include "lib/scatter.clh"
+#include "lib/volume.clh"
+
+#define ROULETTE_FROM 3 // bounces
+
+inline float greatest(Vec3 v) { return v_max(v_max(v.x, v.y), v.z); }
+
+__kernel void shade(VOLUME_ARGS, LIGHT_ARGS, __global const float* lobe, PATH_ARGS, __global const uint* active, __global uint* state, uint count, uint bounce) {
+    Volume vol = VOLUME_HERE;
+    Light light = LIGHT_HERE;
+    uint entry = (uint)get_global_id(0);
+    if (entry >= count) return;
+    uint path = active[entry];
+    state[entry] = 0u;
+    float4 at = origin[path], sum = radiance[path], way = heading[path];
+    Vec3 dir = vec3_of(way), throughput = vec3_of(weight[path]);
+    if (at.w < 0.0f) { // a camera ray sees no light: the background is laid under the picture at the end
+        if (bounce > 0) {
+            float density;
+            Vec3 met = product(throughput, light_radiance(&light, dir, &density));
+            met = along(vec3_of(sum), met, way.w / (way.w + density));
+            radiance[path] = (float4)(met.x, met.y, met.z, sum.w);
+        }
+        return;
+    }
+    if (bounce == 0) radiance[path] = (float4)(sum.x, sum.y, sum.z, 1.0f);
+    if (render->bounces > 0 && bounce >= (uint)render->bounces) return;
+
+    Vec3 p = vec3_of(at);
+    Vec3 albedo = albedo_of(&vol, stored_value(&vol, p));
+    uint2 id = path_id[path];
+    RandomBlock a = philox(id.x, id.y, 0u, bounce * 4 + CLVR_STREAM_SHADE, render->key0, render->key1);
+    RandomBlock b = philox(id.x, id.y, 1u, bounce * 4 + CLVR_STREAM_SHADE, render->key0, render->key1);
+
+    bool at_surface = false;
+    Surface surface;
+    if (volume_params->shading != 1) {
+        Vec3 gradient = world_gradient(&vol, p);
+        float steepness = sqrt(inner3(gradient, gradient));
+        at_surface = v_uniform(a.x) < surface_chance(volume_params, steepness);
+        if (at_surface) surface = make_surface(lobe, scaled(gradient, -1.0f / steepness), negated(dir), albedo);
+    }
+
+    Vec3 to_light, incoming;
+    float light_density, own_density;
+    bool directional = light_sample(&light, v_uniform(a.y), v_uniform(a.z), v_uniform(a.w), &to_light, &incoming, &light_density);
+    Vec3 value;
+    if (at_surface) value = surface_value(&surface, to_light, &own_density);
+    else {
+        own_density = phase_density(render->phase_g, inner3(dir, to_light));
+        value = scaled(albedo, own_density);
+    }
+    // Balance heuristic: value L / light_density * light_density / (light_density + own_density).
+    if (!directional) value = scaled(value, light_density > 0.0f ? 1.0f / (light_density + own_density) : 0.0f);
+    Vec3 adds = product(product(throughput, value), incoming);
+    uint flags = greatest(adds) > 0.0f ? 2u : 0u;
+    shadow_heading[path] = (float4)(to_light.x, to_light.y, to_light.z, 0.0f);
+    shadow_light[path] = (float4)(adds.x, adds.y, adds.z, 0.0f);
+
+    Vec3 next;
+    if (at_surface) {
+        next = surface_sample(&surface, v_uniform(b.x), v_uniform(b.y), v_uniform(b.z));
+        value = surface_value(&surface, next, &own_density);
+        throughput = product(throughput, scaled(value, own_density > 0.0f ? 1.0f / own_density : 0.0f));
+    } else {
+        next = phase_sample(render->phase_g, dir, v_uniform(b.y), v_uniform(b.z));
+        own_density = phase_density(render->phase_g, inner3(dir, next));
+        throughput = product(throughput, albedo);
+    }
+    float strength = greatest(throughput);
+    if (strength > 0.0f) {
+        bool goes_on = true;
+        if (bounce >= ROULETTE_FROM || strength < 0x1p-60f) {
+            float survival = v_min(strength, bounce >= 64 ? 0.99f : 1.0f); // an unlimited path in a white medium ends, too
+            goes_on = v_uniform(b.w) < survival;
+            throughput = scaled(throughput, 1.0f / v_max(survival, 0x1p-100f));
+        }
+        if (goes_on) flags |= 1u;
+        heading[path] = (float4)(next.x, next.y, next.z, own_density);
+        weight[path] = (float4)(throughput.x, throughput.y, throughput.z, 0.0f);
+    }
+    state[entry] = flags;
+}
