@@ -5,21 +5,20 @@
 #   FOLDER   where the Debian 13 lives (default /tmp/clvr-debian-13); made when absent (a minute, 1 GB), kept for the next time
 # Checks that every library is found there, that `clvr devices` sees PoCL, and that `clvr render demo:head` writes a picture.
 set -euo pipefail
+source "$(dirname "$0")/bare_debian.sh"
 tarball=$(realpath "$1")
 debian=${2:-/tmp/clvr-debian-13}
 
-[ -x "$debian/usr/bin/apt-get" ] || debootstrap --variant=minbase trixie "$debian" http://deb.debian.org/debian >"$debian.log" 2>&1 || { tail "$debian.log"; exit 1; }
-# PoCL finds no device without /proc and /sys. A mount namespace of our own: nothing stays mounted.
-inside() { unshare --mount bash -c 'mount --bind /proc "$0/proc" && mount --bind /sys "$0/sys" && mount --bind /dev "$0/dev" && exec chroot "$0" /usr/bin/env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root "$@"' "$debian" "$@"; }
-inside dpkg-query -W pocl-opencl-icd >/dev/null 2>&1 ||
-    inside sh -c 'apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends pocl-opencl-icd' >"$debian.log" 2>&1 ||
+make_debian trixie "$debian"
+inside "$debian" dpkg-query -W pocl-opencl-icd >/dev/null 2>&1 ||
+    inside "$debian" sh -c 'apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends pocl-opencl-icd' >"$debian.log" 2>&1 ||
     { tail "$debian.log"; exit 1; }
 
-rm -rf "$debian/opt/clvr"
+rm -rf "$debian/opt/clvr" "$debian/root/head.png"
 mkdir -p "$debian/opt/clvr"
 tar -xzf "$tarball" -C "$debian/opt/clvr" --strip-components=1
-inside sh -c 'if ldd /opt/clvr/bin/clvr | grep "not found"; then exit 1; fi'
-inside /opt/clvr/bin/clvr devices
-inside /opt/clvr/bin/clvr render demo:head -o /root/head.png --spp 4 --size 160x160
-[ "$(head -c 4 "$debian/root/head.png" | tail -c 3)" == PNG ] || { echo "no picture"; exit 1; }
+inside "$debian" sh -c 'if ldd /opt/clvr/bin/clvr | grep "not found"; then exit 1; fi'
+inside "$debian" /opt/clvr/bin/clvr devices
+inside "$debian" /opt/clvr/bin/clvr render demo:head -o /root/head.png --spp 4 --size 160x160
+is_png "$debian/root/head.png" || { echo "no picture"; exit 1; }
 echo "$(basename "$tarball") ($(($(stat -c %s "$tarball") / 1000000)) MB) runs on Debian $(cat "$debian/etc/debian_version")"
