@@ -60,8 +60,12 @@ inline Vec3 seek_visible(const Volume* vol, const Ray* r, vfloat t0, vfloat t1, 
 
 inline void march_ray(const Volume* vol, __constant RenderParams* render, Vec3 pos_index, Vec3 dir_world, vmask lanes, MarchSums* sums) {
     Ray ray = make_ray(vol->p, pos_index, dir_world);
-    float step = render->step, rate = -vol->p->extinction * step;
-    vfloat t0, t1, t, transmitted = (vfloat)(1.0f), half_depth = (vfloat)(1.0f);
+    float step = render->step;
+    vfloat t0, t1, t, half_depth = (vfloat)(1.0f);
+#if CLVR_MARCH != 2
+    float rate = -vol->p->extinction * step;
+    vfloat transmitted = (vfloat)(1.0f);
+#endif
     clip_ray(vol->p, &ray, &t0, &t1);
     vmask active = v_lt(t0, t1) & lanes;
     t0 = v_select(active, t0, (vfloat)(0.0f)), t1 = v_select(active, t1, (vfloat)(0.0f));
@@ -77,7 +81,7 @@ inline void march_ray(const Volume* vol, __constant RenderParams* render, Vec3 p
         sums->peak = v_select(seen, stored, sums->peak);
         sums->met |= seen;
 #else
-        vfloat w = v_select(active, transmitted * (1.0f - v_exp(opacity * rate)), (vfloat)(0.0f));
+        vfloat absorbed = v_select(active, 1.0f - v_exp(opacity * rate), (vfloat)(0.0f)), w = transmitted * absorbed;
         vmask seen = v_gt(w, (vfloat)(0.0f));
         if (v_any(seen)) {
             vfloat steepness, depth = (t - render->depth_near) * render->depth_scale;
@@ -87,12 +91,12 @@ inline void march_ray(const Volume* vol, __constant RenderParams* render, Vec3 p
             vfloat lit = fma(surface_chance(vol->p, steepness), fma((vfloat)(-0.8f), 1.0f + inner3(normal, dir_world), (vfloat)(0.0f)), (vfloat)(1.0f));
             color = scaled(color, lit);
 #endif
-            sums->weight += w;
+            sums->weight = fma(transmitted, absorbed, sums->weight);
             sums->color = add_where(seen, sums->color, color, w);
             sums->normal = add_where(seen, sums->normal, normal, w);
             sums->depth = fma(w, depth, sums->depth);
             sums->depth2 = fma(w * depth, depth, sums->depth2);
-            transmitted -= w;
+            transmitted = fma(-transmitted, absorbed, transmitted);
             half_depth = v_select(v_lt(half_depth, (vfloat)(1.0f)) | v_gt(transmitted, (vfloat)(0.5f)), half_depth, depth);
             active &= v_ge(transmitted, (vfloat)(END_TRANSMITTANCE));
         }
@@ -116,12 +120,15 @@ __kernel void march(VOLUME_ARGS, __constant RenderParams* render, uint first_pix
     MarchSums s = {zero, zero, zero, zero, zero, {zero, zero, zero}, {zero, zero, zero}, (vmask)(0)};
     for (int ray = 0; ray < CLVR_RAYS; ++ray) {
         // A rotated grid: each position has its own row and column in the pixel.
-        float px = CLVR_RAYS == 1 ? 0.5f : 0.125f + 0.25f * (float)((ray * 2 + (ray >> 1)) & 3), py = CLVR_RAYS == 1 ? 0.5f : 0.125f + 0.25f * (float)ray;
+        int column = (ray * 2 + (ray >> 1)) & 3;
+        float px = CLVR_RAYS == 1 ? 0.5f : fma((float)column, 0.25f, 0.125f), py = CLVR_RAYS == 1 ? 0.5f : fma((float)ray, 0.25f, 0.125f);
         Vec3 o, d;
         camera_ray(render, x + px, y + py, &o, &d);
         march_ray(&vol, render, o, d, lanes, &s);
     }
+#if CLVR_MARCH != 2
     float share = 1.0f / (float)CLVR_RAYS;
+#endif
 #if CLVR_MARCH == 0
     vmask seen = v_ge(s.weight * share, (vfloat)(LEAST_OPACITY));
     vfloat divisor = v_select(seen, s.weight, (vfloat)(1.0f)), one = (vfloat)(1.0f);
@@ -142,7 +149,7 @@ __kernel void march(VOLUME_ARGS, __constant RenderParams* render, uint first_pix
     int count = 4;
 #else
     // The peak's place in the transfer function's domain, as grey.
-    vfloat grey = v_clamp(fma(s.peak, (vfloat)(volume_params->box_high.w), (vfloat)(volume_params->box_low.w)) / (float)CLVR_TABLE_LAST, zero, (vfloat)(1.0f));
+    vfloat grey = v_clamp(table_index(volume_params, s.peak) / (float)CLVR_TABLE_LAST, zero, (vfloat)(1.0f));
     grey = v_select(s.met, grey, zero);
     vfloat out[4] = {grey, grey, grey, v_select(s.met, (vfloat)(1.0f), zero)};
     int count = 4;

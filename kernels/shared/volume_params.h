@@ -9,7 +9,7 @@ typedef struct VolumeParams {
     int4 last;             ///< xyz: greatest voxel index
     int4 cells;            ///< xyz: majorant cells; w: log2 of their edge
     int4 bricks;           ///< xyz: bricks; w: log2 of their edge
-    float4 box_low;        ///< xyz: lower corner of the (clipped) volume [index]; w: index of the transfer table for stored value 0
+    float4 box_low;        ///< xyz: lower corner of the (clipped) volume [index]; w: stored value of table entry 0
     float4 box_high;       ///< xyz: upper corner [index]; w: table entries per stored unit
     float4 plane;          ///< clip plane in index space: xyz . p <= w stays; all 0 when there is none
     float4 to_index[3];    ///< rows: world direction [mm] to index direction
