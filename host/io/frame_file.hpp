@@ -17,7 +17,8 @@ struct Tonemap {
     std::string curve = "filmic";
     double exposure = 0;
 };
-/// R G B A of the frame as 8-bit RGBA (unpremultiplied, straight alpha as PNG wants) when alpha is not 1 everywhere, else RGB.
+/// R G B A of the frame as 8-bit RGBA with straight alpha when alpha is not 1 everywhere, else RGB. Exposure and curve act on the straight colour
+/// C / A: the colour of a silhouette is that of the surface beside it, over every page that the picture is laid on. Throws Error{input, usage}.
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);
 
 /// Linear RGB image, row 0 on top: [width*height*3].
