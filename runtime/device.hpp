@@ -56,6 +56,9 @@ struct LocalMemory {
     std::size_t bytes;
 };
 
+/// Several buffers as consecutive kernel arguments.
+using BufferList = std::vector<const Buffer*>;
+
 /// One entry point, built for one device. The label of its launches is the entry point's name.
 class Kernel {
 public:
@@ -119,11 +122,12 @@ public:
     /// A build failure throws Error{device} whose text holds the compiler's log with file and line.
     Kernel kernel(const std::string& stage, const Defines& defines = {});
 
-    /// Enqueues a kernel over `global` (rounded up to `local`); arguments are Buffer, LocalMemory or trivially copyable values, in order.
+    /// Enqueues a kernel over `global` (rounded up to `local`); arguments are Buffer, BufferList (an argument each), LocalMemory or trivially
+    /// copyable values, in order.
     template <class... Args>
     void launch(Kernel& k, Range global, Range local, Work work, const Args&... args) {
         cl_uint i = 0;
-        (set_arg(k, i++, args), ...);
+        (set_arg(k, i, args), ...);
         enqueue(k, global, local, work);
     }
 
@@ -140,12 +144,16 @@ private:
     struct State;
     std::shared_ptr<State> state_;
     void set_arg_bytes(Kernel& k, cl_uint i, std::size_t bytes, const void* value);
-    void set_arg(Kernel& k, cl_uint i, const Buffer& b) { set_arg_bytes(k, i, sizeof(cl_mem), &b.handle()()); }
-    void set_arg(Kernel& k, cl_uint i, const LocalMemory& m) { set_arg_bytes(k, i, m.bytes, nullptr); }
+    // Each sets the arguments from index i on and moves i behind them.
+    void set_arg(Kernel& k, cl_uint& i, const Buffer& b) { set_arg_bytes(k, i++, sizeof(cl_mem), &b.handle()()); }
+    void set_arg(Kernel& k, cl_uint& i, const BufferList& list) {
+        for (const Buffer* b : list) set_arg(k, i, *b);
+    }
+    void set_arg(Kernel& k, cl_uint& i, const LocalMemory& m) { set_arg_bytes(k, i++, m.bytes, nullptr); }
     template <class T>
-    void set_arg(Kernel& k, cl_uint i, const T& value) {
+    void set_arg(Kernel& k, cl_uint& i, const T& value) {
         static_assert(std::is_trivially_copyable_v<T>);
-        set_arg_bytes(k, i, sizeof(T), &value);
+        set_arg_bytes(k, i++, sizeof(T), &value);
     }
     void enqueue(Kernel& k, Range global, Range local, Work work);
 };
