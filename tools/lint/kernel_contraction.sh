@@ -4,19 +4,19 @@
 # Usage: kernel_contraction.sh ROOT
 source "$(dirname "$0")/kernel_files.sh"
 
-fused() { # FILE WIDTH MODE: "file:line" of each fused operation
-    kernel_clang "$1" "$2" -target nvptx64-nvidia-nvcl -ffp-contract="$3" -O2 -gline-directives-only -S -o - |
+fused() { # MODE FILE DEFINE...: "file:line" of each fused operation
+    kernel_clang "${@:2}" -target nvptx64-nvidia-nvcl -ffp-contract="$1" -O2 -gline-directives-only -S -o - |
         awk '$1 == ".file" { gsub(/"/, ""); file[$2] = $NF } $1 == ".loc" { at = $2 " " $3 } /fma\.rn/ { where[n++] = at }
              END { for (i = 0; i < n; i++) { split(where[i], p, " "); print file[p[1]] ":" p[2] } }'
 }
 export -f fused
 
-check() { # FILE WIDTH
+check() { # FILE DEFINE...
     local fast off
-    fast=$(fused "$1" "$2" fast)
-    off=$(fused "$1" "$2" off)
+    fast=$(fused fast "$@")
+    off=$(fused off "$@")
     [ "$fast" == "$off" ] || {
-        echo "$1 (width $2): product and sum may be fused, write fma():" $(diff <(echo "$off") <(echo "$fast") | sed -n 's/^> //p' | sort -u)
+        echo "$*: product and sum may be fused, write fma():" $(diff <(echo "$off") <(echo "$fast") | sed -n 's/^> //p' | sort -u)
         return 1
     }
 }

@@ -1,17 +1,25 @@
 # Sourced by the kernel lints.
 set -euo pipefail
 
-kernel_clang() { # FILE WIDTH OPTION...: clang on a kernel file as OpenCL C 1.2, from within kernels/
-    clang-14 -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -I . -DCLVR_WIDTH="$2" "${@:3}" "$1"
+# What the host may define for a build, beside the packet width: together these reach every `#if` of the kernels.
+variants=('-DCLVR_MARCH=0' '-DCLVR_VOXEL=short -DCLVR_POOLS=2 -DCLVR_MARCH=1' '-DCLVR_VOXEL=float -DCLVR_POOLS=8 -DCLVR_MARCH=2')
+
+kernel_clang() { # FILE OPTION...: clang on a kernel file as OpenCL C 1.2, from within kernels/
+    clang-14 -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -I . "${@:2}" "$1"
 }
 
-# for_each_kernel ROOT [SKIPPED]: calls the shell function `check FILE WIDTH` for every .cl file of ROOT/kernels but those whose path matches the
-# pattern SKIPPED, at packet width 1 and 16, two at a time. Fails when a check does (it says why itself) or when there is no file.
+# for_each_kernel ROOT [SKIPPED]: calls the shell function `check FILE DEFINE...` for every .cl file of ROOT/kernels but those whose path matches
+# the pattern SKIPPED, in every variant, those that speak of CLVR_WIDTH also 16 lanes wide; two at a time. Fails when a check does (it says why
+# itself) or when there is no file.
 for_each_kernel() {
     cd "$1/kernels"
-    local files
+    local files file width variant
     files=$(find . -name '*.cl' ! -path "${2:-}" | sort)
     [ -n "$files" ] || { echo "no kernel file in $PWD"; return 1; }
     export -f check kernel_clang
-    sed 's|^\./\(.*\)|\1 1\n\1 16|' <<<"$files" | xargs -P2 -L1 bash -c 'set -euo pipefail; check "$@"' _
+    for file in $files; do
+        for width in 1 $(grep -q CLVR_WIDTH "$file" && echo 16); do
+            for variant in "${variants[@]}"; do echo "${file#./} -DCLVR_WIDTH=$width $variant"; done
+        done
+    done | xargs -P2 -L1 bash -c 'set -euo pipefail; check "$@"' _
 }

@@ -16,16 +16,16 @@ allowed=(
 )
 export fine="^($(IFS='|'; echo "${allowed[*]}"))"
 
-check() { # FILE WIDTH
+check() { # FILE DEFINE...
     local ir refused
-    ir=$(kernel_clang "$1" "$2" -target spir64 -O0 -emit-llvm -S -o -)
+    ir=$(kernel_clang "$@" -target spir64 -O0 -emit-llvm -S -o -)
     refused=$(grep -oP '^declare [^@]*@\K[\w.]+' <<<"$ir" | c++filt | grep -vP "$fine" | tr '\n' ' ') || true
     ! grep -qw double <<<"$ir" || refused+="double "
-    [ -z "$refused" ] || { echo "$1 (width $2): not the same bits everywhere: $refused"; return 1; }
+    [ -z "$refused" ] || { echo "$*: not on the list of what has the same bits everywhere: $refused"; return 1; }
 }
 
 # Masks are 1 at width 1 and -1 at width 16, so what reads them stays in one header.
-masks=$(cd "$1/kernels" && grep -rnP '\b(any|all|select)\s*\(' --include='*.cl' --include='*.clh' . | grep -v '^\./lib/vec') || true
+masks=$(cd "$1/kernels" && grep -rnP '^((?!//).)*\b(any|all|select)\(' --include='*.cl' --include='*.clh' . | grep -v '^\./lib/vec') || true
 [ -z "$masks" ] || { echo "any, all and select belong in lib/vec*.clh only:"; echo "$masks"; exit 1; }
 
 for_each_kernel "$1"

@@ -26,9 +26,11 @@ kernel() { echo "kernel void k(global float* x, global float16* v, global int* n
 for lint in kernel_syntax kernel_symbols kernel_contraction; do
     expect accepts $lint kernels/render/k.cl < <(kernel 'x[i] = fma(x[i], x[i], floor(x[i + 1])) + sqrt(x[i] / 3.0f); v[i] = rint(v[i]); n[i] = min(n[i], convert_int(x[i])) + (int)x[i];')
     expect refuses $lint kernels/readme.txt 'no kernel file' <<<'nothing to see'
+    expect refuses $lint kernels/k.cl 'error' < <(kernel 'x[i] = 0.0f;'; printf '#if defined(CLVR_MARCH) && CLVR_MARCH == 2\n#error\n#endif\n') # in a variant
 done
 expect refuses kernel_syntax kernels/k.cl 'unused variable' < <(kernel 'int unused;')
 expect refuses kernel_syntax kernels/k.cl 'double' < <(kernel 'x[i] = x[i] * 2.0;')
+expect refuses kernel_syntax kernels/lib/k.clh 'static inline' <<<'inline float f(float x) { return x; }'
 expect refuses kernel_syntax kernels/k.cl 'error' <<<'this is no OpenCL C'
 expect refuses kernel_syntax kernels/k.cl 'width_16' < <(kernel 'x[i] = 0;'; printf '#if CLVR_WIDTH == 16\n#error width_16\n#endif\n')
 
