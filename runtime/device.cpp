@@ -4,6 +4,7 @@
 #include "runtime/check.hpp"
 #include "runtime/program.hpp"
 #include "runtime/size.hpp"
+#include "runtime/trust.hpp"
 
 #include <fmt/format.h>
 
@@ -84,9 +85,10 @@ struct Device::State {
     }
 };
 
-Device Device::open(const DeviceFacts& facts, bool) {
-    if (!facts.available) throw Error(ErrorKind::device, "the device is not available now; try another --device", facts.name);
-    if (!facts.has_compiler) throw Error(ErrorKind::device, "the device has no OpenCL compiler; try another --device", facts.name);
+Device Device::open(const DeviceFacts& facts, bool relaxed) {
+    if (const std::string why = why_unusable(facts); !why.empty())
+        throw Error(ErrorKind::device, why + "; try another --device", facts.name);
+    if (!relaxed) require_trust(facts);
     Device device;
     device.state_ = std::make_shared<State>();
     State& state = *device.state_;

@@ -122,8 +122,11 @@ public:
     /// A build failure throws Error{device} whose text holds the compiler's log with file and line.
     Kernel kernel(const std::string& stage, const Defines& defines = {});
 
-    /// Enqueues a kernel over `global` (rounded up to `local`); arguments are Buffer, BufferList (an argument each), LocalMemory or trivially
-    /// copyable values, in order.
+    /// Most work-items in a group of this kernel on this device (also below the device's own limit: registers, private memory).
+    std::size_t max_local_items(const Kernel& k) const;
+
+    /// Enqueues a kernel over `global` (rounded up to `local`); arguments are Buffer, BufferList (an argument each), LocalMemory or
+    /// trivially copyable values, in order.
     template <class... Args>
     void launch(Kernel& k, Range global, Range local, Work work, const Args&... args) {
         cl_uint i = 0;

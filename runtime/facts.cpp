@@ -3,9 +3,11 @@
 #include "runtime/check.hpp"
 #include "runtime/quirks.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <mutex>
 
 namespace clvr {
@@ -20,11 +22,12 @@ std::string trimmed(std::string text) {
     return text;
 }
 
-DeviceFacts facts_of(const cl::Device& device, const PlatformFacts& platform) {
+/// The facts that the device itself tells.
+DeviceFacts facts_of(const cl::Device& device, const std::string& platform, const std::string& platform_version) {
     DeviceFacts f;
     f.handle = device;
-    f.platform = platform.name;
-    f.platform_version = platform.version;
+    f.platform = platform;
+    f.platform_version = platform_version;
     f.vendor = trimmed(device.getInfo<CL_DEVICE_VENDOR>());
     f.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
     f.version = trimmed(device.getInfo<CL_DEVICE_VERSION>());
@@ -68,7 +71,7 @@ PlatformFacts facts_of(const cl::Platform& handle) {
         platform.version = trimmed(handle.getInfo<CL_PLATFORM_VERSION>());
         std::vector<cl::Device> devices;
         handle.getDevices(CL_DEVICE_TYPE_ALL, &devices);
-        for (const cl::Device& device : devices) platform.devices.push_back(facts_of(device, platform));
+        for (const cl::Device& device : devices) platform.devices.push_back(facts_of(device, platform.name, platform.version));
     } catch (const cl::Error& error) {
         spdlog::warn("OpenCL platform \"{}\" is broken: {}", platform.name, translated(error, {}).line());
     }
@@ -76,6 +79,48 @@ PlatformFacts facts_of(const cl::Platform& handle) {
 }
 
 } // namespace
+
+std::string why_unusable(const DeviceFacts& device) {
+    int major = 0, minor = 0;
+    if (!device.available) return "is not available now";
+    if (!device.has_compiler) return "has no OpenCL compiler";
+    if (std::sscanf(device.version.c_str(), "OpenCL %d.%d", &major, &minor) != 2 || major * 10 + minor < 12)
+        return fmt::format("offers \"{}\", clvr needs OpenCL 1.2", device.version);
+    return {};
+}
+
+const char* type_name(DeviceType type) { return type == DeviceType::cpu ? "cpu" : type == DeviceType::gpu ? "gpu" : "accelerator"; }
+
+std::vector<DeviceFacts> divide(const DeviceFacts& root, int parts) {
+    const unsigned count = static_cast<unsigned>(parts);
+    if (parts < 2 || count > root.max_sub_devices || count > root.compute_units)
+        throw Error(ErrorKind::device,
+                    root.max_sub_devices ? fmt::format("cannot be divided into {} parts, at most {}", parts, root.max_sub_devices)
+                                         : "cannot be divided into parts",
+                    root.name);
+    return cl_check(fmt::format("dividing {} into {} parts", root.name, parts), [&] {
+        const cl_device_partition_property equally[] = {CL_DEVICE_PARTITION_EQUALLY,
+                                                        static_cast<cl_device_partition_property>(root.compute_units / count), 0};
+        cl::Device handle = root.handle;
+        std::vector<cl::Device> handles;
+        handle.createSubDevices(equally, &handles);
+        if (handles.size() < count)
+            throw Error(ErrorKind::device, fmt::format("gave {} parts where {} were wanted", handles.size(), parts), root.name);
+        handles.resize(count); // more come when the compute units do not divide
+        std::vector<cl::Device> family = handles;
+        family.push_back(root.handle);
+        const cl::Context context(family);
+        std::vector<DeviceFacts> facts;
+        for (const cl::Device& part : handles) {
+            facts.push_back(facts_of(part, root.platform, root.platform_version));
+            facts.back().index = root.index;
+            facts.back().sub_device = static_cast<int>(facts.size()) - 1;
+            facts.back().sub_devices = parts;
+            facts.back().context = context;
+        }
+        return facts;
+    });
+}
 
 std::vector<PlatformFacts> list_platforms() {
     static std::once_flag once;

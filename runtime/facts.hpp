@@ -34,6 +34,16 @@ struct PlatformFacts {
     std::vector<DeviceFacts> devices; ///< may be empty: a platform without devices is a fact, too
 };
 
+/// Why clvr cannot run on the device, in words; empty when it can.
+std::string why_unusable(const DeviceFacts& device);
+
+/// "cpu", "gpu" or "accelerator".
+const char* type_name(DeviceType type);
+
+/// `parts` sub-devices of equal size (where the compute units do not divide, the rest stays idle), in one context with their root.
+/// Throws Error{device} when the device cannot be divided so.
+std::vector<DeviceFacts> divide(const DeviceFacts& root, int parts);
+
 /// Lists all platforms, in the loader's order. No platform at all gives an empty vector. Never throws for a broken platform: it is listed
 /// without devices.
 std::vector<PlatformFacts> list_platforms();

@@ -1,13 +1,20 @@
 #include "runtime/folders.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <unistd.h>
 
 namespace clvr {
+namespace fs = std::filesystem;
 namespace {
 
-std::optional<std::filesystem::path> xdg_folder(const char* variable, const char* under_home) {
-    const auto absolute = [](const char* name) -> std::optional<std::filesystem::path> {
+std::optional<fs::path> xdg_folder(const char* variable, const char* under_home) {
+    const auto absolute = [](const char* name) -> std::optional<fs::path> {
         const char* value = std::getenv(name);
         if (!value || *value != '/') return std::nullopt;
         return value;
@@ -19,14 +26,46 @@ std::optional<std::filesystem::path> xdg_folder(const char* variable, const char
 
 } // namespace
 
-std::optional<std::filesystem::path> cache_folder() { return xdg_folder("XDG_CACHE_HOME", ".cache"); }
+std::optional<fs::path> cache_folder() {
+    const auto folder = xdg_folder("XDG_CACHE_HOME", ".cache");
+    if (folder && writable_folder(*folder)) return folder;
+    static std::atomic_flag warned = ATOMIC_FLAG_INIT;
+    if (!warned.test_and_set())
+        spdlog::warn("the cache folder {} cannot be written, so kernels are built and devices probed anew in each run; set XDG_CACHE_HOME "
+                     "to a writable folder",
+                     folder ? folder->string() : "(HOME is not set)");
+    return std::nullopt;
+}
 
-std::optional<std::filesystem::path> config_folder() { return xdg_folder("XDG_CONFIG_HOME", ".config"); }
+std::optional<fs::path> config_folder() { return xdg_folder("XDG_CONFIG_HOME", ".config"); }
 
-bool writable_folder(const std::filesystem::path& folder) {
+bool writable_folder(const fs::path& folder) {
     std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    return std::filesystem::is_directory(folder, failed) && access(folder.c_str(), W_OK | X_OK) == 0;
+    fs::create_directories(folder, failed);
+    return fs::is_directory(folder, failed) && access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
+std::optional<std::string> load_file(const fs::path& path) {
+    std::error_code failed;
+    if (!fs::is_regular_file(path, failed)) return std::nullopt;
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(std::istreambuf_iterator<char>(file), {});
+    if (!file) return std::nullopt;
+    return bytes;
+}
+
+bool replace_file(const fs::path& path, std::string_view bytes) {
+    static std::atomic<unsigned> count{0};
+    const fs::path temporary = fmt::format("{}.{}.{}", path.string(), getpid(), count++);
+    std::error_code failed;
+    fs::create_directories(path.parent_path(), failed);
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (file) fs::rename(temporary, path, failed);
+    if (file && !failed) return true;
+    fs::remove(temporary, failed);
+    return false;
 }
 
 } // namespace clvr

@@ -1,17 +1,27 @@
-// Where clvr keeps files of its own, by the XDG base directory rules.
+// Where clvr keeps files of its own (XDG base directories), and how it reads and replaces them.
 #pragma once
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <string_view>
 
 namespace clvr {
 
-/// $XDG_CACHE_HOME/clvr or ~/.cache/clvr; nothing when neither variable is an absolute path. Not created here.
+/// $XDG_CACHE_HOME/clvr or ~/.cache/clvr, made if need be; what is in it can be made again. Nothing, after one warning in the life of the
+/// process, when it cannot be written.
 std::optional<std::filesystem::path> cache_folder();
 
-/// $XDG_CONFIG_HOME/clvr or ~/.config/clvr; nothing when neither variable is an absolute path. Not created here.
+/// $XDG_CONFIG_HOME/clvr or ~/.config/clvr; nothing when neither variable is an absolute path. Not made here.
 std::optional<std::filesystem::path> config_folder();
 
 /// The folder exists, or was made just now, and takes new files.
 bool writable_folder(const std::filesystem::path& folder);
+
+/// The whole file, or nothing when it cannot be read.
+std::optional<std::string> load_file(const std::filesystem::path& path);
+
+/// Writes beside `path` under a name that no other process or thread uses, then renames: readers see the old file or the new one. False
+/// when that fails, nothing is left then.
+bool replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 } // namespace clvr

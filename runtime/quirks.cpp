@@ -40,8 +40,7 @@ void pocl_hides_devices_without_writable_cache() {
         std::error_code ignored;
         fs::remove_all(private_cache, ignored);
     });
-    spdlog::warn("the kernel cache {} cannot be written; kernels are compiled anew in each run (set XDG_CACHE_HOME to a writable folder)",
-                 usual.empty() ? "(no HOME)" : usual.string());
+    spdlog::debug("PoCL cannot write {}; it keeps its kernels in a temporary folder", usual.empty() ? "(no HOME)" : usual.string());
 }
 
 bool pocl_aborts_on_broken_binaries(const std::string& platform) {

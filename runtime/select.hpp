@@ -1,7 +1,10 @@
 // Which device to use, and why (DESIGN.md section 4, "Device selector").
 #pragma once
 #include "runtime/facts.hpp"
+#include "runtime/remembered.hpp"
+#include "runtime/selector.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +14,22 @@ struct Selection {
     std::vector<DeviceFacts> devices; ///< one or more; sub-devices share their parent's context
     std::string rule;                 ///< one sentence: which rule decided
 };
+
+/// What may decide, in this order; the fastest by a short probe comes last.
+struct Wishes {
+    std::string option;      ///< --device
+    std::string environment; ///< CLVR_DEVICE
+    std::optional<std::vector<RememberedDevice>> remembered;
+};
+
+struct Choice {
+    std::vector<DevicePart> parts; ///< positions in the flat list of all devices
+    std::string rule;
+};
+
+/// The choice among these platforms' devices, without any OpenCL call but those of `fastest`.
+/// Throws Error{device} when there is no platform, no device, or none that the deciding rule allows; Error{usage} for a malformed selector.
+Choice choose_devices(const std::vector<PlatformFacts>& platforms, const Wishes& wishes, const Fastest& fastest);
 
 /// Resolves the selector: `selector` if not empty, else CLVR_DEVICE, else what was remembered, else the fastest by a short probe whose
 /// answer is stored per device list and driver version. A selector is an index, `cpu`, `gpu`, part of a name, `cpu/2`, or several joined by

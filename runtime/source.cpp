@@ -41,7 +41,8 @@ private:
     }
 
     void file(const std::string& path, const std::string& text, bool conditional) {
-        static const std::regex include(R"re(^\s*#\s*include\s*"([^"]+)".*$)re"), opens(R"(^\s*#\s*if.*$)"), closes(R"(^\s*#\s*endif.*$)");
+        static const std::regex include(R"re(^\s*#\s*include\s*"([^"]+)".*$)re"), opens(R"(^\s*#\s*if.*$)"), closes(R"(^\s*#\s*endif.*$)"),
+            once(R"(^\s*#\s*pragma\s+once\s*$)");
         seen_[path] = Seen::open;
         line(fmt::format("#line 1 \"{}\"", path), path, 1);
         std::istringstream lines(text);
@@ -49,6 +50,7 @@ private:
         int depth = 0;
         for (int number = 1; std::getline(lines, current); ++number) {
             if (!current.empty() && current.back() == '\r') current.pop_back();
+            if (std::regex_match(current, once)) current.clear(); // the compiler sees one file
             std::smatch match;
             if (std::regex_match(current, opens)) ++depth;
             if (std::regex_match(current, closes)) --depth;

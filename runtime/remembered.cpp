@@ -1,0 +1,74 @@
+#include "runtime/remembered.hpp"
+
+#include "runtime/error.hpp"
+#include "runtime/folders.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace clvr {
+namespace {
+
+std::optional<std::filesystem::path> remembered_path() {
+    const auto folder = config_folder();
+    if (!folder) return std::nullopt;
+    return *folder / "device.json";
+}
+
+bool same_names(const DeviceFacts& a, const DeviceFacts& b) { return a.platform == b.platform && a.name == b.name; }
+
+} // namespace
+
+std::optional<std::vector<RememberedDevice>> load_remembered() {
+    const auto path = remembered_path();
+    const auto text = path ? load_file(*path) : std::nullopt;
+    if (!text) return std::nullopt;
+    try {
+        std::vector<RememberedDevice> devices;
+        for (const nlohmann::json& entry : nlohmann::json::parse(*text).at("devices"))
+            devices.push_back({entry.at("platform"), entry.at("name"), entry.value("occurrence", 0), entry.value("sub_devices", 0)});
+        if (devices.empty()) throw Error(ErrorKind::input, "names no device; delete the file or run clvr-bench --save", path->string());
+        return devices;
+    } catch (const nlohmann::json::exception&) {
+        throw Error(ErrorKind::input, "is not a list of devices as clvr-bench --save writes it; delete the file or run clvr-bench --save",
+                    path->string());
+    }
+}
+
+void save_remembered(const std::vector<RememberedDevice>& devices) {
+    const auto path = remembered_path();
+    if (!path) throw Error(ErrorKind::input, "there is no folder to remember the device in; set HOME or XDG_CONFIG_HOME");
+    nlohmann::json entries = nlohmann::json::array();
+    for (const RememberedDevice& device : devices)
+        entries.push_back(
+            {{"platform", device.platform}, {"name", device.name}, {"occurrence", device.occurrence}, {"sub_devices", device.sub_devices}});
+    if (!replace_file(*path, nlohmann::json{{"devices", entries}}.dump(2) + "\n"))
+        throw Error(ErrorKind::input, "cannot be written; check the folder's permissions", path->string());
+}
+
+std::vector<RememberedDevice> remember(const std::vector<DevicePart>& parts, const std::vector<DeviceFacts>& devices) {
+    std::vector<RememberedDevice> remembered;
+    for (const DevicePart& part : parts) {
+        const DeviceFacts& device = devices[part.device];
+        const auto before = std::count_if(devices.begin(), devices.begin() + static_cast<std::ptrdiff_t>(part.device),
+                                          [&](const DeviceFacts& d) { return same_names(d, device); });
+        remembered.push_back({device.platform, device.name, static_cast<int>(before), part.sub_devices});
+    }
+    return remembered;
+}
+
+std::optional<std::vector<DevicePart>> recall(const std::vector<RememberedDevice>& remembered, const std::vector<DeviceFacts>& devices) {
+    std::vector<DevicePart> parts;
+    for (const RememberedDevice& wanted : remembered) {
+        int occurrence = wanted.occurrence;
+        const auto found = std::find_if(devices.begin(), devices.end(), [&](const DeviceFacts& d) {
+            return d.platform == wanted.platform && d.name == wanted.name && occurrence-- == 0;
+        });
+        if (found == devices.end()) return std::nullopt;
+        parts.push_back({static_cast<std::size_t>(found - devices.begin()), wanted.sub_devices});
+    }
+    return parts;
+}
+
+} // namespace clvr
