@@ -57,8 +57,9 @@ TransferTable tabulate(const TransferFunction& tf, const Voxels& v, double low, 
     table.first = points.front().value;
     table.last = points.back().value;
     const double scale = std::max({std::fabs(table.first), std::fabs(table.last), high - low});
-    if (const double least = (scale > 0 ? scale : 1) * 0x1p-16;
-        table.last - table.first < least) { // all points at one value: a constant or one step
+    const double least = (scale > 0 ? scale : 1) * 0x1p-16;
+    const bool one_value = table.last - table.first < least; // a constant or one step
+    if (one_value) {
         table.first -= least / 2;
         table.last += least / 2;
     }
