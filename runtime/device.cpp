@@ -189,12 +189,15 @@ void Device::set_arg_bytes(Kernel& k, cl_uint i, std::size_t bytes, const void* 
     cl_check(fmt::format("argument {} ({} bytes) of kernel {}", i, bytes, k.label_), [&] { k.handle_.setArg(i, bytes, value); });
 }
 
+std::size_t Device::max_local_items(const Kernel& k) const {
+    return cl_check(state_->doing(k.label_), [&] { return k.handle_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->facts.handle); });
+}
+
 void Device::enqueue(Kernel& k, Range global, Range local, Work work) {
     const std::size_t group = local.x * local.y * local.z;
     if (group == 0) throw Error(ErrorKind::internal, "a local size of 0", k.label_);
     if (global.x == 0 || global.y == 0 || global.z == 0) return;
-    const std::size_t limit =
-        cl_check(state_->doing(k.label_), [&] { return k.handle_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->facts.handle); });
+    const std::size_t limit = max_local_items(k);
     const std::size_t* items = state_->facts.max_work_item;
     if (group > limit || local.x > items[0] || local.y > items[1] || local.z > items[2])
         throw Error(ErrorKind::device,

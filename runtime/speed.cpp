@@ -34,10 +34,11 @@ double probe_speed_ms(const DeviceFacts& facts) {
     double best_ms = std::numeric_limits<double>::infinity();
     for (const cl_uint width : {1u, 16u}) {
         Kernel kernel = device.kernel("probe/speed", {{"CLVR_WIDTH", std::to_string(width)}});
+        const Range local{std::min<std::size_t>(64, device.max_local_items(kernel))};
         for (int i = 0; i < repetitions; ++i) {
             device.finish();
             device.profile().clear();
-            device.launch(kernel, {lanes / width}, {64}, {}, results, entries_buffer, entries - 1, steps, lanes / width);
+            device.launch(kernel, {lanes / width}, local, {}, results, entries_buffer, entries - 1, steps, lanes / width);
             device.finish();
             if (i > 0) best_ms = std::min(best_ms, device.profile().rows().front().elapsed_ms);
         }
