@@ -7,11 +7,13 @@
 namespace clvr {
 
 /// Channels are planar float32, row 0 on top, width*height values each, named as in DESIGN.md section 4 "Frames":
-/// R G B A (linear, premultiplied), albedo.R ..., normal.X ..., depth.Z, opacity.A, depth.deviation, depth.half, variance.R ..., background.R ...
+/// R G B A (linear, premultiplied), albedo.R ..., normal.X ..., depth.Z, opacity.A, depth.deviation, depth.half, variance.R ...,
+/// background.R ...
 struct Frame {
     int width = 0, height = 0;
     std::map<std::string, std::vector<float>> channels;
-    std::map<std::string, std::string> attributes; ///< provenance: "clvr.volume.sha256", "clvr.scene", "clvr.seed", "clvr.spp", "clvr.device", ...
+    std::map<std::string, std::string>
+        attributes; ///< provenance: "clvr.volume.sha256", "clvr.scene", "clvr.seed", "clvr.spp", "clvr.device", ...
 
     std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
     bool has(const std::string& name) const { return channels.count(name) != 0; }

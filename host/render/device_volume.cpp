@@ -1,0 +1,63 @@
+#include "host/render/device_volume.hpp"
+
+#include <string>
+
+namespace clvr {
+
+namespace {
+
+const char* opencl_type(VoxelType t) {
+    switch (t) {
+    case VoxelType::u8:
+        return "uchar";
+    case VoxelType::i8:
+        return "char";
+    case VoxelType::u16:
+        return "ushort";
+    case VoxelType::i16:
+        return "short";
+    case VoxelType::f32:
+        return "float";
+    }
+    return "uchar";
+}
+
+constexpr std::size_t upload_piece = std::size_t{4} << 20; // [bytes]: the host never holds a second copy of the volume
+
+} // namespace
+
+int packet_width(const Device& device) {
+    const DeviceFacts& f = device.facts();
+    const int fallback = f.type != DeviceType::cpu ? 1 : f.native_float_width >= 16 ? 16 : f.native_float_width >= 8 ? 8 : 4;
+    const int width = device.tunable("packet", fallback);
+    if (width != 1 && width != 4 && width != 8 && width != 16)
+        throw Error(ErrorKind::usage, "is " + std::to_string(width) + "; expected 1, 4, 8 or 16", "tunable packet");
+    return width;
+}
+
+BrickLayout device_layout(const Device& device, const Classified& c) {
+    return brick_layout(*c.voxels, *c.grid, c.majorants, device.tunable("brick_log2", 4), device.max_alloc_bytes());
+}
+
+DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& params) {
+    params_ = device.upload(std::vector<shared::VolumeParams>{params}, "volume parameters");
+    majorants_ = device.upload(c.majorants, "majorants");
+    opacity_ = device.upload(c.table.opacity, "opacity table");
+    color_ = device.upload(c.table.color, "colour table");
+    offset_ = device.upload(layout.offset, "brick offsets");
+    pool_ = device.upload(layout.pool, "brick pools");
+    for (int k = 0; k < layout.pools; ++k) {
+        voxels_.push_back(device.buffer(std::max<std::size_t>(layout.pool_bytes[k], 16), "bricks"));
+        pack_pool(*c.voxels, layout, k, upload_piece,
+                  [&](const unsigned char* bytes, std::size_t size, std::size_t offset) { device.write(voxels_[k], bytes, size, offset); });
+    }
+    defines_ = {{"CLVR_VOXEL", opencl_type(c.voxels->type)}, {"CLVR_POOLS", std::to_string(layout.pools)}};
+}
+
+BufferList DeviceVolume::arguments() const {
+    BufferList list{&params_, &majorants_, &opacity_, &color_, &offset_, &pool_};
+    for (const Buffer& b : voxels_) list.push_back(&b);
+    return list;
+}
+
+} // namespace clvr

@@ -1,0 +1,39 @@
+// A volume and its classification on one device: the arguments VOLUME_ARGS of the kernels.
+#pragma once
+#include "host/volume/bricks.hpp"
+#include "kernels/shared/volume_params.h"
+#include "runtime/device.hpp"
+
+namespace clvr {
+
+/// The volume prepared for a classification, on the host: independent of the device.
+struct Classified {
+    const Voxels* voxels = nullptr;
+    const MajorantGrid* grid = nullptr;
+    TransferTable table;
+    std::vector<float> majorants;
+};
+
+/// Where the bricks of a classified volume go on a device. Brick edge: tunable "brick_log2" (default 4: 17^3 voxels, 1.2 times the voxels'
+/// bytes).
+BrickLayout device_layout(const Device& device, const Classified& c);
+
+class DeviceVolume {
+public:
+    /// Uploads bricks, majorants and tables. Throws Error{memory} when they do not fit.
+    DeviceVolume(Device& device, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& params);
+    /// CLVR_VOXEL, CLVR_POOLS.
+    const Defines& defines() const { return defines_; }
+    /// VOLUME_ARGS, in order.
+    BufferList arguments() const;
+
+private:
+    Buffer params_, majorants_, opacity_, color_, offset_, pool_;
+    std::vector<Buffer> voxels_;
+    Defines defines_;
+};
+
+/// The packet width of the trackers on a device: tunable "packet", default 16, 8 or 4 by the CPU's native vectors, 1 elsewhere.
+int packet_width(const Device& device);
+
+} // namespace clvr

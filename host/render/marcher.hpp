@@ -1,0 +1,36 @@
+// The feature, dvr and mip marcher on one device.
+#pragma once
+#include "host/render/device_volume.hpp"
+#include "host/render/light_tables.hpp"
+
+#include <vector>
+
+namespace clvr {
+
+/// What a march writes: kernels/render/march.cl.
+enum class March { features, dvr, mip };
+/// Planes of the result: 10 for features (albedo RGB, normal XYZ, depth, opacity, depth deviation, half depth), 4 (RGBA) else.
+constexpr int march_planes(March m) { return m == March::features ? 10 : 4; }
+
+class Marcher {
+public:
+    /// `rays` positions a pixel (1 or 4). `volume` and `light` outlive the marcher.
+    Marcher(Device& device, const DeviceVolume& volume, const LightTables& light, March march, int rays);
+
+    /// Marches pixels first_pixel .. first_pixel + pixels - 1 (numbered in 4x4 blocks) into planes[p * stride + offset + i].
+    void run(std::uint32_t first_pixel, std::uint32_t pixels, std::vector<float>& planes, std::size_t stride, std::size_t offset);
+
+    /// Pixels of one launch: keeps it below about 100 ms.
+    static constexpr std::uint32_t pixels_per_launch = 1 << 14;
+
+private:
+    Device device_;
+    const DeviceVolume& volume_;
+    const LightTables& light_;
+    March march_;
+    int width_;
+    Kernel kernel_;
+    Buffer planes_;
+};
+
+} // namespace clvr

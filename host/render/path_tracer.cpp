@@ -1,0 +1,92 @@
+#include "host/render/path_tracer.hpp"
+#include "host/render/surface_lobe.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace clvr {
+
+namespace {
+
+constexpr std::uint32_t samples_per_wave = 16; // at most, of one pixel: neighbouring paths are then almost the same ray
+constexpr std::uint32_t compact_run = 64;
+
+} // namespace
+
+PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light)
+    : device_(device), volume_(volume), light_(light), width_(packet_width(device)) {
+    const bool cpu = device.facts().type == DeviceType::cpu;
+    capacity_ = static_cast<std::uint32_t>(std::max(16, device.tunable("wave_paths", cpu ? 1 << 16 : 1 << 20)));
+
+    Defines packet = volume.defines(), scalar = volume.defines();
+    packet["CLVR_WIDTH"] = std::to_string(width_);
+    scalar["CLVR_WIDTH"] = "1";
+    camera_rays_ = device_.kernel("render/camera_rays", {{"CLVR_WIDTH", "1"}});
+    free_flight_ = device_.kernel("render/free_flight", packet);
+    shade_ = device_.kernel("render/shade", scalar);
+    compact_ = device_.kernel("render/compact", {{"CLVR_RUN", std::to_string(compact_run)}});
+    transmittance_ = device_.kernel("render/transmittance", packet);
+    accumulate_ = device_.kernel("render/accumulate");
+
+    lobe_ = device_.upload(surface_lobe_table(), "surface lobe");
+
+    const std::size_t n = capacity_;
+    path_id_ = device_.buffer(n * 8, "path numbers");
+    for (Buffer* b : {&origin_, &heading_, &weight_, &radiance_, &shadow_heading_, &shadow_light_})
+        *b = device_.buffer(n * 16, "path state");
+    for (Buffer* b : {&active_[0], &active_[1], &state_, &shadowed_}) *b = device_.buffer(n * 4, "path lists");
+    counts_ = device_.buffer(8, "path counts");
+    mean_ = device_.buffer(n * 16, "pixel means");
+    deviation_ = device_.buffer(n * 16, "pixel deviations");
+}
+
+std::uint32_t PathTracer::pixels_per_wave(std::uint32_t samples) const {
+    return std::max(1u, capacity_ / std::min(samples, samples_per_wave));
+}
+
+bool PathTracer::trace(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples, PixelSums& sums,
+                       std::size_t offset, const std::atomic<bool>& cancelled) {
+    const std::uint32_t at_once = std::min(samples, samples_per_wave), wave = pixels_per_wave(samples);
+    for (std::uint32_t done = 0; done < pixels; done += wave) {
+        const std::uint32_t n = std::min(wave, pixels - done);
+        device_.write(mean_, &sums.mean[offset + done], n * sizeof(shared::float4));
+        device_.write(deviation_, &sums.deviation[offset + done], n * sizeof(shared::float4));
+        for (std::uint32_t s = 0; s < samples; s += at_once) {
+            if (cancelled) return false;
+            const std::uint32_t k = std::min(at_once, samples - s);
+            trace_wave(first_pixel + done, n, first_sample + s, k);
+            device_.launch(accumulate_, {n}, {64}, {n * (32.0 + 16.0 * k), 0}, radiance_, mean_, deviation_, n, k, first_sample + s);
+        }
+        device_.read(mean_, &sums.mean[offset + done], n * sizeof(shared::float4));
+        device_.read(deviation_, &sums.deviation[offset + done], n * sizeof(shared::float4));
+    }
+    return true;
+}
+
+void PathTracer::trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples) {
+    const BufferList volume = volume_.arguments();
+    const BufferList paths{&path_id_, &origin_, &heading_, &weight_, &radiance_, &shadow_heading_, &shadow_light_};
+    const Range per_packet{static_cast<std::size_t>(device_.tunable("packet_group", width_ == 1 ? 64 : 1))};
+    const Range per_path{static_cast<std::size_t>(device_.tunable("shade_group", 64))};
+    const auto packets = [&](std::uint32_t count) { return Range{(count + width_ - 1) / width_}; };
+
+    std::uint32_t active = pixels * samples, listed = 0;
+    device_.launch(camera_rays_, {active}, per_path, {active * 92.0, 0}, light_.render(), paths, active_[0], active, first_pixel,
+                   first_sample, samples);
+    for (std::uint32_t bounce = 0; active > 0; ++bounce) {
+        device_.launch(free_flight_, packets(active), per_packet, {}, volume, light_.render(), paths, active_[listed], active, bounce);
+        device_.fill(counts_, 0);
+        device_.launch(shade_, {active}, per_path, {}, volume, light_.arguments(), lobe_, paths, active_[listed], state_, active, bounce);
+        device_.launch(compact_, {(active + compact_run - 1) / compact_run}, {1}, {active * 20.0, 0}, active_[listed], state_, active,
+                       active_[1 - listed], shadowed_, counts_);
+        std::uint32_t counts[2];
+        device_.read(counts_, counts, sizeof counts);
+        if (counts[1] > 0)
+            device_.launch(transmittance_, packets(counts[1]), per_packet, {}, volume, light_.render(), paths, shadowed_, counts[1],
+                           bounce);
+        active = counts[0];
+        listed = 1 - listed;
+    }
+}
+
+} // namespace clvr

@@ -1,0 +1,44 @@
+// The wavefront path tracer on one device.
+#pragma once
+#include "host/render/device_volume.hpp"
+#include "host/render/light_tables.hpp"
+
+#include <atomic>
+#include <vector>
+
+namespace clvr {
+
+/// Running statistics of a run of pixels (numbered in 4x4 blocks, kernels/lib/paths.clh): mean RGB and alpha, sum of squared deviations of
+/// RGB.
+struct PixelSums {
+    std::vector<shared::float4> mean, deviation;
+};
+
+class PathTracer {
+public:
+    /// `volume` and `light` outlive the tracer. Waves hold tunable "wave_paths" paths (default 65536 on CPUs, 1048576 elsewhere).
+    PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light);
+
+    /// Adds samples first_sample .. first_sample + samples - 1 to pixels first_pixel .. first_pixel + pixels - 1, in sample order, into
+    /// sums[offset ...]. Returns false, with those sums undefined, when `cancelled` became true.
+    bool trace(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples, PixelSums& sums,
+               std::size_t offset, const std::atomic<bool>& cancelled);
+
+    /// Pixels that fill a wave at a number of samples each.
+    std::uint32_t pixels_per_wave(std::uint32_t samples) const;
+
+private:
+    void trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples);
+
+    Device device_;
+    const DeviceVolume& volume_;
+    const LightTables& light_;
+    std::uint32_t capacity_;
+    int width_;
+    Kernel camera_rays_, free_flight_, shade_, compact_, transmittance_, accumulate_;
+    Buffer lobe_;
+    Buffer path_id_, origin_, heading_, weight_, radiance_, shadow_heading_, shadow_light_;
+    Buffer active_[2], state_, shadowed_, counts_, mean_, deviation_;
+};
+
+} // namespace clvr

@@ -1,0 +1,244 @@
+#include "host/render/renderer.hpp"
+#include "host/render/marcher.hpp"
+#include "host/render/params.hpp"
+#include "host/render/path_tracer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace clvr {
+
+namespace {
+
+constexpr double framing_opacity = 0.02; // what is fainter does not count for the camera's framing
+const std::atomic<bool> never{false};
+
+/// x, y of a pixel number: kernels/lib/paths.clh pixel_of.
+std::array<std::uint32_t, 2> pixel_of(std::uint32_t number, int width) {
+    const std::uint32_t blocks_x = (width + 3u) / 4, block = number / 16;
+    return {block % blocks_x * 4 + number % 4, block / blocks_x * 4 + number / 4 % 4};
+}
+
+/// Calls put(pixel number, index in the frame) for every pixel of the picture.
+template <class F>
+void for_pixels(std::uint32_t numbers, int width, int height, F&& put) {
+    for (std::uint32_t i = 0; i < numbers; ++i) {
+        const auto [x, y] = pixel_of(i, width);
+        if (x < static_cast<std::uint32_t>(width) && y < static_cast<std::uint32_t>(height))
+            put(i, static_cast<std::size_t>(y) * width + x);
+    }
+}
+
+Classified classify(const PreparedVolume& volume, const Scene& scene) {
+    Classified c;
+    c.voxels = &volume.voxels;
+    c.grid = &volume.grid;
+    double low = volume.grid.range[0], high = volume.grid.range[1];
+    for (std::size_t k = 0; k < volume.grid.range.size(); k += 2) {
+        low = std::min<double>(low, volume.grid.range[k]);
+        high = std::max<double>(high, volume.grid.range[k + 1]);
+    }
+    c.table = tabulate(scene.transfer ? *scene.transfer : automatic_transfer_function(volume.voxels, stored_histogram(volume.voxels)),
+                       volume.voxels, low, high);
+    c.majorants = majorants(volume.grid, c.table);
+    return c;
+}
+
+std::vector<Double3> outline_of(const Classified& c, const Scene& scene) {
+    std::vector<float> clear = c.majorants;
+    for (float& m : clear)
+        if (m <= framing_opacity) m = 0;
+    return visible_outline(c.voxels->geometry, *c.grid, clear, visible_box(*c.voxels, *c.grid, c.table, framing_opacity),
+                           clip_box_index(scene, *c.voxels));
+}
+
+} // namespace
+
+/// One device's share of the work.
+struct Renderer::Worker {
+    Device device;
+    DeviceVolume volume;
+    LightTables light;
+    std::optional<PathTracer> tracer;
+    Worker(const Device& d, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& v, const shared::RenderParams& r,
+           const EnvironmentTables& e)
+        : device(d), volume(device, c, layout, v), light(device, r, e) {}
+};
+
+Renderer::Renderer(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment,
+                   bool steady)
+    : scene_(scene) {
+    validate(scene);
+    const Classified c = classify(volume, scene);
+    if (std::none_of(c.majorants.begin(), c.majorants.end(), [](float m) { return m > 0; }))
+        warnings_.push_back("nothing is visible: the transfer function gives every voxel the opacity 0; try another --tf, or `clvr info` "
+                            "for the range of the values");
+    const View view = resolve_view(scene, outline_of(c, scene), steady);
+    const shared::RenderParams render = render_params(scene, volume.voxels, view, environment);
+    numbers_ = (scene.width + 3u) / 4 * ((scene.height + 3u) / 4) * 16;
+    for (Device& d : devices) {
+        const BrickLayout layout = device_layout(d, c);
+        workers_.push_back(
+            std::make_unique<Worker>(d, c, layout, volume_params(scene, volume.voxels, volume.grid, c.table, layout), render, environment));
+    }
+}
+
+Renderer::~Renderer() = default;
+
+/// Deals runs of `tile` pixel numbers to the devices as they become free: work(worker, first, count), on a thread a device.
+template <class F>
+void Renderer::deal(std::uint32_t tile, F&& work) {
+    std::atomic<std::uint32_t> next{0};
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto drive = [&](Worker& worker) {
+        try {
+            for (std::uint64_t first = next.fetch_add(tile); first < numbers_; first = next.fetch_add(tile))
+                work(worker, static_cast<std::uint32_t>(first),
+                     static_cast<std::uint32_t>(std::min<std::uint64_t>(tile, numbers_ - first)));
+        } catch (...) {
+            next = numbers_;
+            const std::lock_guard lock(mutex);
+            if (!failure) failure = std::current_exception();
+        }
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t k = 1; k < workers_.size(); ++k) threads.emplace_back(drive, std::ref(*workers_[k]));
+    drive(*workers_.front());
+    for (auto& t : threads) t.join();
+    if (failure) std::rethrow_exception(failure);
+}
+
+Frame Renderer::render(const RenderControl& control) {
+    Frame frame;
+    frame.width = scene_.width, frame.height = scene_.height;
+    if (scene_.features) march(frame, true, control);
+    if (scene_.mode == Mode::path)
+        trace(frame, control);
+    else
+        march(frame, false, control);
+    lay_background(frame);
+    return frame;
+}
+
+void Renderer::trace(Frame& frame, const RenderControl& control) {
+    using clock = std::chrono::steady_clock;
+    const auto begin = clock::now();
+    const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
+    for (auto& w : workers_)
+        if (!w->tracer) w->tracer.emplace(w->device, w->volume, w->light);
+
+    PixelSums sums{std::vector<shared::float4>(numbers_), std::vector<shared::float4>(numbers_)}, finished = sums;
+    int reached = 0;
+    double seconds_per_sample = 0;
+    for (int pass = 1; reached < scene_.spp; pass = std::min(pass * 2, 16)) {
+        int samples = std::min(pass, scene_.spp - reached);
+        const auto start = clock::now();
+        if (control.seconds > 0 && reached > 0) {
+            const double left = control.seconds - std::chrono::duration<double>(start - begin).count();
+            samples = std::min(samples, static_cast<int>(std::max(0.0, left / seconds_per_sample)));
+            if (samples == 0) break;
+        }
+        std::uint32_t tile = ~0u;
+        for (auto& w : workers_)
+            tile = std::min(
+                {tile, w->tracer->pixels_per_wave(samples), std::max(16u, numbers_ / static_cast<std::uint32_t>(4 * workers_.size()))});
+        tile = std::max(16, workers_.front()->device.tunable("tile_pixels", static_cast<int>(tile)));
+        std::atomic<std::uint32_t> done{0};
+        deal(tile, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
+            if (!w.tracer->trace(first, count, reached, samples, sums, first, cancelled)) return;
+            done += count;
+            if (control.progress) control.progress({(reached + samples * static_cast<double>(done) / numbers_) / scene_.spp, reached});
+        });
+        if (cancelled) break;
+        finished = sums;
+        reached += samples;
+        seconds_per_sample = std::chrono::duration<double>(clock::now() - start).count() / samples;
+        if (control.progress) control.progress({static_cast<double>(reached) / scene_.spp, reached});
+    }
+    if (reached == 0) throw Error(ErrorKind::interrupted, "interrupted before the first sample of every pixel was done; nothing was saved");
+
+    auto& r = frame.channel("R");
+    auto& g = frame.channel("G");
+    auto& b = frame.channel("B");
+    auto& a = frame.channel("A");
+    for_pixels(numbers_, frame.width, frame.height, [&](std::uint32_t i, std::size_t at) {
+        const shared::float4& m = finished.mean[i];
+        r[at] = m.x, g[at] = m.y, b[at] = m.z, a[at] = m.w;
+    });
+    if (reached > 1) {
+        auto& vr = frame.channel("variance.R");
+        auto& vg = frame.channel("variance.G");
+        auto& vb = frame.channel("variance.B");
+        const double scale = 1.0 / (static_cast<double>(reached) * (reached - 1)); // of the mean
+        for_pixels(numbers_, frame.width, frame.height, [&](std::uint32_t i, std::size_t at) {
+            const shared::float4& d = finished.deviation[i];
+            vr[at] = static_cast<float>(d.x * scale), vg[at] = static_cast<float>(d.y * scale), vb[at] = static_cast<float>(d.z * scale);
+        });
+    }
+    frame.attributes["clvr.spp"] = std::to_string(reached);
+}
+
+void Renderer::march(Frame& frame, bool features, const RenderControl& control) {
+    static const std::vector<std::string> feature_names{"albedo.R", "albedo.G", "albedo.B",  "normal.X",        "normal.Y",
+                                                        "normal.Z", "depth.Z",  "opacity.A", "depth.deviation", "depth.half"};
+    static const std::vector<std::string> color_names{"R", "G", "B", "A"};
+    const March kind = features ? March::features : scene_.mode == Mode::dvr ? March::dvr : March::mip;
+    const auto& names = features ? feature_names : color_names;
+    const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
+
+    std::vector<float> planes(names.size() * numbers_);
+    std::vector<std::unique_ptr<Marcher>> marchers;
+    for (auto& w : workers_) marchers.push_back(std::make_unique<Marcher>(w->device, w->volume, w->light, kind, scene_.feature_samples));
+    deal(Marcher::pixels_per_launch, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
+        if (cancelled) return;
+        const auto index =
+            std::find_if(workers_.begin(), workers_.end(), [&](const auto& other) { return other.get() == &w; }) - workers_.begin();
+        marchers[index]->run(first, count, planes, numbers_, first);
+        if (control.progress) control.progress({0, 0});
+    });
+    if (cancelled) throw Error(ErrorKind::interrupted, "interrupted before the features were done; nothing was saved");
+    for (std::size_t p = 0; p < names.size(); ++p) {
+        auto& channel = frame.channel(names[p]);
+        const float* plane = &planes[p * numbers_];
+        for_pixels(numbers_, frame.width, frame.height, [&](std::uint32_t i, std::size_t at) { channel[at] = plane[i]; });
+    }
+    if (!features) frame.attributes["clvr.spp"] = std::to_string(scene_.feature_samples);
+}
+
+/// Composites the picture over the background: C + (1 - A) B, alpha 1; B stays in the channels background.R/G/B.
+void Renderer::lay_background(Frame& frame) {
+    if (scene_.background.kind == Background::Kind::transparent) return;
+    std::vector<shared::float4> under(numbers_);
+    if (scene_.background.kind == Background::Kind::color) {
+        const auto& c = scene_.background.color;
+        std::fill(under.begin(), under.end(),
+                  shared::float4{static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), 0});
+    } else {
+        deal(Marcher::pixels_per_launch, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
+            Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
+            Buffer out = w.device.buffer(count * sizeof(shared::float4), "background");
+            w.device.launch(kernel, {count}, {64}, {}, w.light.arguments(), first, count, out);
+            w.device.read(out, &under[first], count * sizeof(shared::float4));
+        });
+    }
+    std::array<std::vector<float>*, 3> color{&frame.channel("R"), &frame.channel("G"), &frame.channel("B")};
+    std::array<std::vector<float>*, 3> below{&frame.channel("background.R"), &frame.channel("background.G"),
+                                             &frame.channel("background.B")};
+    auto& alpha = frame.channel("A");
+    for_pixels(numbers_, frame.width, frame.height, [&](std::uint32_t i, std::size_t at) {
+        const float b[3] = {under[i].x, under[i].y, under[i].z};
+        for (int k = 0; k < 3; ++k) {
+            (*below[k])[at] = b[k];
+            (*color[k])[at] += (1 - alpha[at]) * b[k];
+        }
+        alpha[at] = 1;
+    });
+}
+
+} // namespace clvr

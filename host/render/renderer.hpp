@@ -1,0 +1,63 @@
+// A scene and a volume to a frame, on one device or several: the same bits either way.
+#pragma once
+#include "host/render/environment.hpp"
+#include "host/render/frame.hpp"
+#include "host/render/scene.hpp"
+#include "host/volume/bricks.hpp"
+#include "runtime/device.hpp"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace clvr {
+
+/// Where a rendering stands: share of the work done (0..1), samples per pixel reached.
+struct RenderProgress {
+    double done = 0;
+    int samples = 0;
+};
+
+struct RenderControl {
+    double seconds = 0;                                  ///< stop adding passes when they would end later than this; 0: no limit
+    const std::atomic<bool>* cancelled = nullptr;        ///< set by Ctrl-C: the passes finished so far are the result
+    std::function<void(const RenderProgress&)> progress; ///< called from the calling thread or a worker, now and then
+};
+
+/// The volume's part that no scene changes, computed once: majorant ranges.
+struct PreparedVolume {
+    Voxels voxels;
+    MajorantGrid grid;
+    explicit PreparedVolume(Voxels v) : voxels(std::move(v)), grid(majorant_grid(voxels)) {}
+};
+
+class Renderer {
+public:
+    /// Classifies the volume, frames the camera, uploads to every device. `environment` holds the tables of the scene's image (empty
+    /// without one). `steady` frames for a turntable (resolve_view). Adds to `warnings()` when nothing is visible. Throws Error.
+    Renderer(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {},
+             bool steady = false);
+    ~Renderer();
+
+    /// Renders the scene. `frame.attributes` gets "clvr.spp" (samples reached). Throws Error{interrupted} when cancelled before one pass
+    /// was done.
+    Frame render(const RenderControl& control = {});
+
+    const std::vector<std::string>& warnings() const { return warnings_; }
+
+private:
+    struct Worker;
+    std::vector<std::unique_ptr<Worker>> workers_;
+    Scene scene_;
+    std::uint32_t numbers_; // pixel numbers, in 4x4 blocks
+    std::vector<std::string> warnings_;
+
+    template <class F>
+    void deal(std::uint32_t tile, F&& work);
+    void trace(Frame& frame, const RenderControl& control);
+    void march(Frame& frame, bool features, const RenderControl& control);
+    void lay_background(Frame& frame);
+};
+
+} // namespace clvr
