@@ -1,0 +1,57 @@
+// The parts that a computed head is made of: smooth solids in millimetres, joined or cut one after the other.
+#ifndef CLVR_SHARED_PHANTOM_H
+#define CLVR_SHARED_PHANTOM_H
+#include "shared/types.h"
+CLVR_SHARED_BEGIN
+
+#define CLVR_PART_ELLIPSOID 0 // |q| = 1
+#define CLVR_PART_BLOCK 1     // sum of fourth powers of q = 1: an ellipsoid with square shoulders
+#define CLVR_PART_TUBE 2      // round, its radius linear from end to end
+
+/// A solid. x is to the patient's left, y posterior, z up; the origin lies between the ear canals.
+typedef struct PhantomPart {
+    float4 center; ///< w: beyond this distance from the centre the part has no effect
+    float4 a;      ///< ellipsoid and block: a row of the matrix to the unit body (q = rows . (p - center)), w: 1 / radius; tube: start, w:
+                   ///< radius there
+    float4 b;      ///< second row; tube: from start to end, w: 1 / length^2
+    float4 c;      ///< third row; tube: x: radius at the end less that at the start
+    float blend;   ///< width of the smooth transition to what came before [mm]
+    float quarter; ///< 1 / (4 blend)
+    float sign;    ///< 1 joins, -1 cuts
+    int kind;
+} PhantomPart;
+CLVR_CHECK_SIZE(PhantomPart, 80);
+
+/// What is made of a list of parts; the order of the lists.
+enum PhantomBody {
+    CLVR_SKIN,   ///< the outline of the head
+    CLVR_CAVITY, ///< inside of the braincase and of the spinal canal
+    CLVR_FACE,   ///< bones but the braincase
+    CLVR_TEETH,
+    CLVR_AIR,     ///< nose, sinuses, throat, ear canals
+    CLVR_ORBIT,   ///< eye sockets: fat
+    CLVR_GLOBE,   ///< eyeballs
+    CLVR_STRANDS, ///< muscles in fat, turbinates in air
+    CLVR_CEREBRUM,
+    CLVR_CEREBELLUM,
+    CLVR_VENTRICLES,
+    CLVR_VESSELS, ///< with contrast agent; the only ones that are not mirrored
+    CLVR_BODIES
+};
+
+/// Voxels along an axis of the cells for which the host lists the parts that can have an effect.
+#define CLVR_CELL_X 16
+#define CLVR_CELL_Y 8
+#define CLVR_CELL_Z 8
+
+typedef struct PhantomParams {
+    int4 dims;      ///< xyz: voxels
+    int4 cells;     ///< xyz: cells
+    float4 origin;  ///< xyz: position of voxel 0 [mm]; w: 1 / width of the ramp of partial volume [1/mm]
+    float4 spacing; ///< xyz [mm]
+    uint key0, key1, pad0, pad1;
+} PhantomParams;
+CLVR_CHECK_SIZE(PhantomParams, 80);
+
+CLVR_SHARED_END
+#endif
