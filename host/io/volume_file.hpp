@@ -10,18 +10,18 @@ namespace clvr {
 
 /// How to read a file that does not say it all by itself.
 struct VolumeReadOptions {
-    int frame = 0;                      ///< which frame of a 4-D file
-    std::string series;                 ///< DICOM SeriesInstanceUID; empty: the series with most voxels
-    bool allow_gaps = false;            ///< accept a DICOM series with missing slices
-    std::optional<Int3> dims;           ///< RAW
-    std::string type;                   ///< RAW: uint8, int8, uint16, int16, float32, float64, uint32, int32
-    std::optional<Double3> spacing;     ///< RAW [mm]
-    std::string endian;                 ///< RAW: little (default) or big
+    int frame = 0;                  ///< which frame of a 4-D file
+    std::string series;             ///< DICOM SeriesInstanceUID; empty: the series with most voxels
+    bool allow_gaps = false;        ///< accept a DICOM series with missing slices
+    std::optional<Int3> dims;       ///< RAW
+    std::string type;               ///< RAW: uint8, int8, uint16, int16, float32, float64, uint32, int32
+    std::optional<Double3> spacing; ///< RAW [mm]
+    std::string endian;             ///< RAW: little (default) or big
 };
 
-/// Reads `path`: NIfTI, NRRD, MetaImage, a DICOM file or folder, TIFF, VTK image, RAW (name_WxHxD_type.raw, JSON sidecar, or options), .gz where the format has it.
-/// Every container is checked (header against byte count, gzip to its end, spacing and direction finite and nonzero) before its decoder runs.
-/// Throws Error{input}: one line with the file, what was expected and found, and what to try.
+/// Reads `path`: NIfTI, NRRD, MetaImage, a DICOM file or folder, TIFF, VTK image, RAW (name_WxHxD_type.raw, JSON sidecar, or options), .gz
+/// where the format has it. Every container is checked (header against byte count, gzip to its end, spacing and direction finite and
+/// nonzero) before its decoder runs. Throws Error{input}: one line with the file, what was expected and found, and what to try.
 Voxels read_volume(const std::string& path, const VolumeReadOptions& options = {});
 
 /// SHA-256 (hex) of dims, type and decoded voxels.

@@ -1,0 +1,135 @@
+#include "host/io/byte_stream.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fmt/format.h>
+#include <vector>
+#include <zlib.h>
+
+namespace clvr {
+
+namespace {
+
+constexpr std::uint64_t deflate_ratio = 1032; // the greatest that the format allows
+
+[[noreturn]] void unreadable(const std::string& path) {
+    throw Error(ErrorKind::input, fmt::format("cannot be read: {}", std::strerror(errno)), path);
+}
+
+std::unique_ptr<std::FILE, int (*)(std::FILE*)> open(const std::string& path) {
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    if (!file) unreadable(path);
+    return file;
+}
+
+} // namespace
+
+struct ByteStream::Inflater {
+    z_stream z{};
+    std::array<unsigned char, 1 << 16> input;
+    bool ended = false;
+
+    Inflater() {
+        if (inflateInit2(&z, 15 + 32) != Z_OK) throw Error(ErrorKind::memory, "zlib cannot start"); // 15 + 32: gzip or zlib, by its header
+    }
+    ~Inflater() { inflateEnd(&z); }
+};
+
+ByteStream::ByteStream(const std::string& path, Coding coding, std::uint64_t offset) : path_(path), file_(open(path)) {
+    const std::uint64_t size = std::filesystem::file_size(path);
+    capacity_ = size > offset ? size - offset : 0;
+    if (std::fseek(file_.get(), static_cast<long>(std::min(offset, size)), SEEK_SET) != 0) unreadable(path);
+    if (coding == Coding::deflated) {
+        inflater_ = std::make_unique<Inflater>();
+        capacity_ *= deflate_ratio;
+    }
+}
+
+ByteStream::~ByteStream() = default;
+
+std::size_t ByteStream::read_file(void* to, std::size_t bytes) {
+    const std::size_t n = std::fread(to, 1, bytes, file_.get());
+    if (n < bytes && std::ferror(file_.get())) unreadable(path_);
+    return n;
+}
+
+std::size_t ByteStream::inflate_some(void* to, std::size_t bytes) {
+    Inflater& in = *inflater_;
+    in.z.next_out = static_cast<unsigned char*>(to);
+    in.z.avail_out = static_cast<unsigned>(std::min<std::size_t>(bytes, 1u << 30));
+    const std::size_t wanted = in.z.avail_out;
+    while (in.z.avail_out > 0 && !in.ended) {
+        if (in.z.avail_in == 0) {
+            in.z.next_in = in.input.data();
+            in.z.avail_in = static_cast<unsigned>(read_file(in.input.data(), in.input.size()));
+            if (in.z.avail_in == 0)
+                throw Error(ErrorKind::input, "the compressed data ends too early: the file is truncated, copy it again", path_);
+        }
+        const int status = inflate(&in.z, Z_NO_FLUSH);
+        if (status == Z_STREAM_END) {
+            // A gzip file may hold several members in a row; anything else behind the end is none of the data.
+            if (in.z.avail_in < 2) {
+                std::memmove(in.input.data(), in.z.next_in, in.z.avail_in);
+                in.z.next_in = in.input.data();
+                in.z.avail_in += static_cast<unsigned>(read_file(in.input.data() + in.z.avail_in, in.input.size() - in.z.avail_in));
+            }
+            in.ended = !(in.z.avail_in >= 2 && in.z.next_in[0] == 0x1f && in.z.next_in[1] == 0x8b);
+            if (!in.ended) inflateReset(&in.z);
+        } else if (status != Z_OK && status != Z_BUF_ERROR) {
+            throw Error(ErrorKind::input,
+                        fmt::format("the compressed data is corrupt ({}): copy or download the file again", in.z.msg ? in.z.msg : "zlib"),
+                        path_);
+        }
+    }
+    return wanted - in.z.avail_out;
+}
+
+std::size_t ByteStream::read(void* to, std::size_t bytes) {
+    std::size_t done = 0;
+    while (done < bytes) {
+        auto* at = static_cast<unsigned char*>(to) + done;
+        const std::size_t n = inflater_ ? inflate_some(at, bytes - done) : read_file(at, bytes - done);
+        if (n == 0) break;
+        done += n;
+    }
+    position_ += done;
+    return done;
+}
+
+std::uint64_t ByteStream::skip(std::uint64_t bytes) {
+    if (!inflater_) {
+        const std::uint64_t n = std::min(bytes, capacity_ - position_);
+        if (std::fseek(file_.get(), static_cast<long>(n), SEEK_CUR) != 0) unreadable(path_);
+        position_ += n;
+        return n;
+    }
+    std::vector<unsigned char> scratch(1 << 16);
+    std::uint64_t done = 0;
+    while (done < bytes) {
+        const std::size_t n = read(scratch.data(), static_cast<std::size_t>(std::min<std::uint64_t>(scratch.size(), bytes - done)));
+        if (n == 0) break;
+        done += n;
+    }
+    return done;
+}
+
+std::uint64_t ByteStream::drain() { return skip(UINT64_MAX); }
+
+bool is_gzip(const std::string& path) {
+    const std::string head = read_head(path, 2);
+    return head == "\x1f\x8b";
+}
+
+std::string read_head(const std::string& path, std::size_t limit) {
+    ByteStream stream(path, ByteStream::Coding::plain);
+    std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, stream.capacity())), '\0');
+    head.resize(stream.read(head.data(), head.size()));
+    return head;
+}
+
+} // namespace clvr
