@@ -27,8 +27,10 @@ std::map<std::string, int> tunables_from_environment() {
     for (std::string item; std::getline(items, item, ',');) {
         const std::size_t equals = item.find('=');
         char* end = nullptr;
-        const long value = equals == std::string::npos ? 0 : std::strtol(item.c_str() + equals + 1, &end, 10);
-        if (!end || *end || end == item.c_str() + equals + 1)
+        const std::size_t start = equals == std::string::npos ? item.size() : equals + 1;
+        char* end = nullptr;
+        const long value = std::strtol(item.c_str() + start, &end, 10);
+        if (equals == 0 || end == item.c_str() + start || *end)
             throw Error(ErrorKind::usage, fmt::format("\"{}\" is not name=value with a whole number", item), "CLVR_TUNE");
         tunables[item.substr(0, equals)] = static_cast<int>(value);
     }

@@ -26,7 +26,8 @@ std::optional<std::vector<RememberedDevice>> load_remembered() {
     if (!text) return std::nullopt;
     try {
         std::vector<RememberedDevice> devices;
-        for (const nlohmann::json& entry : nlohmann::json::parse(*text).at("devices"))
+        const auto json = nlohmann::json::parse(*text);
+        for (const nlohmann::json& entry : json.at("devices"))
             devices.push_back({entry.at("platform"), entry.at("name"), entry.value("occurrence", 0), entry.value("sub_devices", 0)});
         if (devices.empty()) throw Error(ErrorKind::input, "names no device; delete the file or run clvr-bench --save", path->string());
         return devices;
