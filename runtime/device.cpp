@@ -26,7 +26,6 @@ std::map<std::string, int> tunables_from_environment() {
     std::istringstream items(text ? text : "");
     for (std::string item; std::getline(items, item, ',');) {
         const std::size_t equals = item.find('=');
-        char* end = nullptr;
         const std::size_t start = equals == std::string::npos ? item.size() : equals + 1;
         char* end = nullptr;
         const long value = std::strtol(item.c_str() + start, &end, 10);
