@@ -1,0 +1,16 @@
+// The volume that a command works on: a file, a folder, or one that clvr computes.
+#pragma once
+#include "host/io/volume_file.hpp"
+#include "runtime/device.hpp"
+
+#include <string>
+
+namespace clvr {
+
+/// Whether the name means a volume that clvr computes ("demo:head").
+bool is_demo_volume(const std::string& name);
+
+/// Reads the file or folder, or computes the demo volume on the device. Logs the reader's notes as warnings. Throws Error.
+Voxels open_volume(const std::string& name, const VolumeReadOptions& options, Device& device);
+
+} // namespace clvr

@@ -1,0 +1,194 @@
+// clvr render: a volume or a scene to pictures.
+#include "host/cli/commands.hpp"
+#include "host/cli/open_volume.hpp"
+#include "host/cli/progress_bar.hpp"
+#include "host/cli/render_options.hpp"
+#include "host/io/atomic_file.hpp"
+#include "host/io/frame_file.hpp"
+#include "host/io/scene_file.hpp"
+#include "host/render/params.hpp"
+#include "host/render/renderer.hpp"
+#include "runtime/embedded.hpp"
+#include "runtime/select.hpp"
+#include "runtime/sha256.hpp"
+#include "runtime/size.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+
+namespace clvr {
+
+namespace {
+
+std::atomic<bool> interrupted{false};
+extern "C" void on_interrupt(int) { interrupted = true; }
+
+/// Ctrl-C and SIGTERM end the rendering, not the program: what was finished is saved. A second one kills.
+void catch_interrupts() {
+    struct sigaction action {};
+    action.sa_handler = on_interrupt;
+    action.sa_flags = SA_RESETHAND;
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+bool is_exr(const std::string& path) { return std::filesystem::path(path).extension() == ".exr"; }
+
+std::string numbered(const std::string& path, int frame) {
+    const std::filesystem::path p(path);
+    return (p.parent_path() / fmt::format("{}_{:03}{}", p.stem().string(), frame, p.extension().string())).string();
+}
+
+void print_presets() {
+    for (const auto& p : transfer_presets()) fmt::print("{:<16} {}\n", p.name, p.description);
+}
+
+std::vector<Device> open_devices(const RenderOptions& o) {
+    const Selection selection = select_devices(o.device);
+    std::vector<Device> devices;
+    for (const auto& facts : selection.devices) {
+        devices.push_back(Device::open(facts, o.relaxed));
+        if (!o.memory.empty()) devices.back().set_memory_limit(parse_size(o.memory, "--memory"));
+        spdlog::debug("device {}: {} ({})", facts.index, facts.name, selection.rule);
+    }
+    return devices;
+}
+
+/// One value that changes with any kernel file.
+std::string kernels_sha256() {
+    std::string all;
+    for (const auto& [path, text] : embedded_kernels()) all += path + '\n' + text;
+    return sha256_hex(all);
+}
+
+EnvironmentTables environment_of(const Scene& scene) {
+    if (scene.light.environment != Light::Environment::image) return {};
+    const RgbImage image = read_environment_image(scene.light.image);
+    return environment_tables(image.width, image.height, image.rgb, scene.light.level);
+}
+
+/// Everything that a frame's file says of its making.
+void add_provenance(Frame& frame, const Scene& scene, const std::vector<Device>& devices) {
+    std::string names;
+    for (const Device& d : devices)
+        names += (names.empty() ? "" : " + ") + d.facts().name + " (" + d.facts().platform + " " + d.facts().driver_version + ")";
+    frame.attributes["clvr.version"] = CLVR_VERSION;
+    frame.attributes["clvr.volume.sha256"] = scene.volume_sha256;
+    frame.attributes["clvr.scene"] = to_json(scene);
+    frame.attributes["clvr.seed"] = std::to_string(scene.seed);
+    frame.attributes["clvr.device"] = names;
+    frame.attributes["clvr.kernels.sha256"] = kernels_sha256();
+}
+
+void save(const Frame& frame, const Scene& scene, const std::string& path) {
+    if (is_exr(path))
+        write_exr(frame, path);
+    else
+        write_png(frame, {scene.tonemap, scene.exposure}, path);
+}
+
+/// Renders one view and writes it to all outputs. Returns the samples reached.
+int render_view(Renderer& renderer, const Scene& scene, const RenderOptions& o, const std::vector<Device>& devices,
+                const std::vector<std::string>& outputs, const std::string& label) {
+    Frame frame;
+    {
+        ProgressBar bar(label, false);
+        const double paths = static_cast<double>(scene.width) * scene.height * scene.spp;
+        RenderControl control;
+        control.seconds = o.seconds;
+        control.cancelled = &interrupted;
+        control.progress = [&](const RenderProgress& p) {
+            const double share = o.seconds > 0 ? std::min(1.0, bar.seconds() / o.seconds) : p.done;
+            bar.update(share, fmt::format("{} spp, {:.2f} Mpaths/s", p.samples, p.done * paths / bar.seconds() * 1e-6));
+        };
+        frame = renderer.render(control);
+    }
+    Scene made = scene;
+    made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
+    add_provenance(frame, made, devices);
+    for (const auto& path : outputs) save(frame, made, path);
+    return made.spp;
+}
+
+void render(const RenderOptions& o) {
+    if (o.list_transfer) return print_presets();
+    if (o.input.empty())
+        throw Error(ErrorKind::usage, "no volume given: name a file or folder, or demo:head for the built-in one", "clvr render");
+    if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr render");
+    if (o.turntable < 0 || o.turntable > 10000)
+        throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
+    if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
+    Scene scene = scene_of(o);
+    for (const auto& path : o.outputs) check_frame_path(path);
+    const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
+
+    catch_interrupts();
+    const EnvironmentTables environment = environment_of(scene);
+    std::vector<Device> devices = open_devices(o);
+    VolumeReadOptions reading = o.volume;
+    reading.frame = scene.frame, reading.series = scene.series, reading.allow_gaps = scene.allow_gaps;
+    const PreparedVolume volume(open_volume(scene.volume, reading, devices.front()));
+    if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
+        const std::string hash = volume_sha256(volume.voxels);
+        if (!scene.volume_sha256.empty() && scene.volume_sha256 != hash)
+            throw Error(
+                ErrorKind::input,
+                fmt::format("does not hold the voxels that the scene was saved with (SHA-256 {}, expected {})", hash, scene.volume_sha256),
+                scene.volume);
+        scene.volume_sha256 = hash;
+    }
+    // Resolved, so that a saved scene does not depend on later defaults.
+    if (!scene.transfer) scene.transfer = automatic_transfer_function(volume.voxels, stored_histogram(volume.voxels));
+    scene.extinction = resolved_extinction(scene, volume.voxels);
+
+    const double azimuth = scene.camera.azimuth;
+    int reached = 0;
+    for (int view = 0; view < std::max(1, o.turntable); ++view) {
+        std::vector<std::string> outputs = o.outputs;
+        if (o.turntable > 0) {
+            for (auto& path : outputs) path = numbered(path, view);
+            scene.camera.azimuth = azimuth + 360.0 * view / o.turntable;
+            scene.view = view;
+        }
+        Scene wanted = scene;
+        wanted.features &= any_exr; // a PNG alone does not need them
+        Renderer renderer(devices, volume, wanted, environment, o.turntable > 0);
+        if (view == 0)
+            for (const auto& w : renderer.warnings()) spdlog::warn("{}", w);
+        reached = render_view(renderer, scene, o, devices, outputs,
+                              o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
+        if (interrupted) break;
+    }
+    if (!o.save_scene.empty()) {
+        scene.camera.azimuth = azimuth;
+        scene.view = 0;
+        scene.spp = reached;
+        if (!is_demo_volume(scene.volume)) scene.volume = std::filesystem::absolute(scene.volume).string();
+        if (!scene.light.image.empty()) scene.light.image = std::filesystem::absolute(scene.light.image).string();
+        const std::string text = to_json(scene);
+        write_atomically(o.save_scene, text.data(), text.size());
+    }
+    if (o.profile)
+        for (auto& d : devices) {
+            d.finish();
+            fmt::print(stderr, "{}", d.profile().table());
+        }
+    if (interrupted)
+        throw Error(ErrorKind::interrupted, fmt::format("interrupted; saved what was finished, {} samples per pixel", reached));
+}
+
+} // namespace
+
+void add_render_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("render", "Render a volume to a picture");
+    auto options = std::make_shared<RenderOptions>();
+    add_render_options(*command, *options);
+    command->callback([options] { render(*options); });
+}
+
+} // namespace clvr

@@ -1,0 +1,36 @@
+// The options of `clvr render`, as text from the command line to a Scene.
+#pragma once
+#include "host/io/volume_file.hpp"
+#include "host/render/scene.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// What the user gave; an option that was not given leaves the scene (its default, or the scene file's value) as it is.
+struct RenderOptions {
+    std::string input;
+    std::vector<std::string> outputs;
+    VolumeReadOptions volume;
+    std::optional<std::string> size, transfer, mode, shading, environment, background, tonemap, clip_box, clip_plane, eye, target;
+    std::optional<double> phase_g, extinction, azimuth, elevation, zoom, fov, exposure, key, key_azimuth, key_elevation, headlight,
+        environment_rotation;
+    std::optional<int> spp, bounces, feature_samples;
+    std::optional<std::uint64_t> seed;
+    bool orthographic = false, list_transfer = false, profile = false, relaxed = false, no_features = false;
+    double seconds = 0;
+    int turntable = 0;
+    std::string device, memory, save_scene;
+};
+
+void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// The scene that the options ask for: that of the scene file when the input is one, else the defaults; then every option that was given.
+/// Reads transfer function files. Throws Error{usage} or Error{input} naming the option or file.
+Scene scene_of(const RenderOptions& options);
+
+} // namespace clvr
