@@ -1,0 +1,205 @@
+#include "host/volume/value_statistics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace clvr {
+
+namespace {
+
+constexpr std::size_t float_bins = 65536;
+
+/// Calls f(values, count, border) on runs of voxels along x that lie wholly inside or wholly outside of the border shell.
+template <class T, class F>
+void for_each_run(const Voxels& v, F&& f) {
+    const std::size_t n[3] = {std::size_t(v.dims[0]), std::size_t(v.dims[1]), std::size_t(v.dims[2])};
+    std::size_t shell[3];
+    for (int axis = 0; axis < 3; ++axis) shell[axis] = std::min(std::max<std::size_t>(n[axis] / 32, 1), (n[axis] + 1) / 2);
+    const T* row = v.data<T>();
+    for (std::size_t z = 0; z < n[2]; ++z)
+        for (std::size_t y = 0; y < n[1]; ++y, row += n[0]) {
+            const bool inside = z >= shell[2] && z + shell[2] < n[2] && y >= shell[1] && y + shell[1] < n[1] && 2 * shell[0] < n[0];
+            const std::size_t begin = inside ? shell[0] : n[0], end = inside ? n[0] - shell[0] : n[0];
+            f(row, begin, true);
+            f(row + begin, end - begin, false);
+            f(row + end, n[0] - end, true);
+        }
+}
+
+template <class T>
+ValueCounts count(const Voxels& v, double low, double high) {
+    ValueCounts counts;
+    const std::size_t bins = std::is_integral_v<T> ? static_cast<std::size_t>(high - low) + 1 : high > low ? float_bins : 1;
+    counts.low = low;
+    counts.width = bins > 1 ? (high - low) / static_cast<double>(bins - 1) : 1;
+    counts.all.resize(bins);
+    counts.border.resize(bins);
+    const double last = static_cast<double>(bins - 1), scale = bins > 1 ? last / (high - low) : 0;
+    for_each_run<T>(v, [&](const T* values, std::size_t n, bool border) {
+        auto& to = border ? counts.border : counts.all;
+        for (std::size_t i = 0; i < n; ++i) ++to[static_cast<std::size_t>(std::clamp((double(values[i]) - low) * scale + 0.5, 0.0, last))];
+    });
+    for (std::size_t i = 0; i < bins; ++i) counts.all[i] += counts.border[i];
+    return counts;
+}
+
+std::uint64_t total(const std::vector<std::uint64_t>& counts) { return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}); }
+std::size_t mode(const std::vector<std::uint64_t>& counts) {
+    return static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin());
+}
+
+/// First bin at which the running sum reaches the share q of the whole, without bin `except`.
+std::size_t quantile(const std::vector<std::uint64_t>& counts, double q, std::size_t except) {
+    const double wanted = q * static_cast<double>(total(counts) - counts[except]);
+    double sum = 0;
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (i != except) sum += static_cast<double>(counts[i]);
+        if (sum > wanted || (sum == wanted && sum > 0)) return i;
+    }
+    return counts.size() - 1;
+}
+
+/// Robust ends of the values: all but one in a thousand of the voxels beside the most frequent value, and that value.
+std::pair<std::size_t, std::size_t> robust_ends(const std::vector<std::uint64_t>& counts) {
+    const std::size_t most = mode(counts);
+    if (total(counts) == counts[most]) return {most, most};
+    return {std::min(most, quantile(counts, 0.001, most)), std::max(most, quantile(counts, 0.999, most))};
+}
+
+constexpr int coarse = 64;
+using Coarse = std::array<double, coarse>;
+
+/// N. Otsu, "A Threshold Selection Method from Gray-Level Histograms", 1979: first bin of the upper class.
+int otsu(const Coarse& h) {
+    double n = 0, sum = 0;
+    for (int b = 0; b < coarse; ++b) n += h[b], sum += b * h[b];
+    double below = 0, below_sum = 0, best = -1;
+    int first = 1;
+    for (int b = 0; b + 1 < coarse; ++b) {
+        below += h[b], below_sum += b * h[b];
+        if (below == 0 || below == n) continue;
+        const double difference = below_sum / below - (sum - below_sum) / (n - below);
+        const double between = below * (n - below) * difference * difference;
+        if (between > best) best = between, first = b + 1;
+    }
+    return first;
+}
+
+/// The first peak at or after `from` that stands 1.5 times above the valley before it, and that valley; {from, from} when the counts only
+/// fall. Counts are smoothed (binomial, 5 taps); the last bins are left out, since saturated values gather there.
+std::pair<int, int> first_peak(const Coarse& h, int from) {
+    const auto smooth = [&](int b) {
+        const auto tap = [&](int i) { return h[static_cast<std::size_t>(std::clamp(i, from, coarse - 1))]; };
+        return (tap(b - 2) + 4 * tap(b - 1) + 6 * tap(b) + 4 * tap(b + 1) + tap(b + 2)) / 16;
+    };
+    int valley = from, peak = from, valley_of_peak = from;
+    for (int b = from; b < coarse - 3; ++b) {
+        if (smooth(b) < smooth(valley)) valley = b;
+        if (peak == from ? smooth(b) > 1.5 * smooth(valley) : smooth(b) > smooth(peak)) peak = b, valley_of_peak = valley;
+        if (peak != from && smooth(b) * 1.3 < smooth(peak)) break; // over the top
+    }
+    return {valley_of_peak, peak};
+}
+
+} // namespace
+
+ValueCounts value_counts(const Voxels& v, double low, double high) {
+    return with_voxel_type(v.type, [&](auto t) {
+        using T = decltype(t);
+        ValueCounts counts = count<T>(v, low, high);
+        for (int zoom = 0; std::is_floating_point_v<T> && zoom < 8; ++zoom) {
+            // Outliers: beyond the robust ends the range is mostly empty. One bin that holds nearly everything hides structure, too.
+            const auto [first, last] = robust_ends(counts.all);
+            const std::size_t most = mode(counts.all);
+            const bool one_bin = counts.all[most] * 1e5 > (1e5 - 1) * static_cast<double>(v.count());
+            const std::size_t from = one_bin ? most : first, to = one_bin ? most : last;
+            if ((to - from + 1) * 4 > counts.bins()) break;
+            const double finer_low = std::max(low, counts.value(double(from) - 0.5)),
+                         finer_high = std::min(high, counts.value(double(to) + 0.5));
+            if (!(finer_high - finer_low > 1e-6 * std::max(std::fabs(finer_low), std::fabs(finer_high))))
+                break; // float itself has no finer values
+            counts = count<T>(v, finer_low, finer_high);
+        }
+        return counts;
+    });
+}
+
+namespace {
+
+ValueSide side(const ValueCounts& counts, std::size_t background, std::size_t end, int sign) {
+    ValueSide s;
+    s.sign = sign;
+    s.top = counts.value(double(end));
+    const double length = std::fabs(double(end) - double(background));
+    if (length == 0) return s;
+
+    Coarse all{}, border{};
+    for (std::size_t i = background; i != end + sign; i += sign) {
+        const int b = std::min(static_cast<int>(std::fabs(double(i) - double(background)) / (length + 1) * coarse), coarse - 1);
+        all[b] += static_cast<double>(counts.all[i]);
+        border[b] += static_cast<double>(counts.border[i]);
+    }
+    // Background is spread evenly over the volume or gathers at the border; structure keeps away from it.
+    const double border_share = static_cast<double>(total(counts.border)) / static_cast<double>(total(counts.all));
+    const int limit = otsu(all);
+    int threshold = 1;
+    for (int b = 1; b < limit; ++b)
+        if (border[b] > 0.9 * border_share * all[b]) threshold = b + 1;
+    const double step = length / coarse;
+    const auto at = [&](double bin) { return counts.value(double(background) + sign * bin * step); };
+
+    int occupied = threshold;
+    while (occupied < coarse - 1 && all[occupied] == 0) ++occupied;
+    const int gap = occupied - threshold;
+    const auto [valley, peak] = first_peak(all, occupied);
+    double structure = 0, beyond_valley = 0;
+    for (int b = threshold; b < coarse; ++b) structure += all[b], beyond_valley += b >= valley ? all[b] : 0;
+    const bool mode_apart = peak > occupied && beyond_valley > 0.5 * structure;
+    s.active = structure > 0;
+    s.surfaces = gap >= 4 || mode_apart;
+    const double first = gap >= 4 ? threshold + 0.5 * gap : threshold;
+    s.threshold = at(first);
+    s.solid = at(std::max(first + 2, first + 0.4 * ((mode_apart ? peak : occupied) - first)));
+
+    s.rank.assign(65, 0);
+    std::vector<double> fine(65, 0);
+    for (int k = 0; k < 64; ++k) {
+        const double from = first + (coarse - first) * k / 64.0, to = first + (coarse - first) * (k + 1) / 64.0;
+        for (int b = static_cast<int>(from); b < coarse && b < to; ++b)
+            fine[k + 1] += all[b] * (std::min(to, b + 1.0) - std::max(from, double(b)));
+        s.rank[k + 1] = s.rank[k] + fine[k + 1];
+    }
+    if (s.rank[64] > 0)
+        for (double& r : s.rank) r /= s.rank[64];
+    return s;
+}
+
+} // namespace
+
+ValueShape value_shape(const ValueCounts& counts) {
+    ValueShape shape;
+    const auto [first, last] = robust_ends(counts.all);
+    shape.low = counts.value(double(first));
+    shape.high = counts.value(double(last));
+    std::size_t background = std::clamp(mode(counts.border), first, last);
+
+    // A border without one prevailing value is structure that was cut: then the low end passes for the background.
+    const std::size_t reach = std::max<std::size_t>((last - first) / 20, 1);
+    double near = 0;
+    for (std::size_t i = background - std::min(background, reach); i <= background + reach && i < counts.bins(); ++i)
+        near += static_cast<double>(counts.border[i]);
+    if (near < 0.25 * static_cast<double>(total(counts.border))) background = first;
+
+    shape.background = counts.value(double(background));
+    shape.above = side(counts, background, last, 1);
+    shape.below = side(counts, background, first, -1);
+    // A short side is the noise around the background.
+    const double range = shape.high - shape.low;
+    shape.above.active = shape.above.active && shape.high - shape.background >= 0.2 * range;
+    shape.below.active = shape.below.active && shape.background - shape.low >= 0.2 * range;
+    return shape;
+}
+
+} // namespace clvr
