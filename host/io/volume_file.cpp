@@ -1,13 +1,14 @@
 #include "host/io/volume_file.hpp"
 #include "host/io/volume_readers.hpp"
 #include "host/io/volume_samples.hpp"
-#include "runtime/sha256.hpp"
 
 #include <algorithm>
 #include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <openssl/evp.h>
 
 namespace clvr {
 
@@ -183,8 +184,16 @@ Voxels read_volume(const std::string& path, const VolumeReadOptions& options) {
 }
 
 std::string volume_sha256(const Voxels& v) {
-    const std::string head = fmt::format("{} {} {} {}", v.dims[0], v.dims[1], v.dims[2], voxel_type_name(v.type));
-    return sha256_hex({head, {reinterpret_cast<const char*>(v.bytes.data()), v.bytes.size()}});
+    const std::string head = fmt::format("{} {} {} {}\n", v.dims[0], v.dims[1], v.dims[2], voxel_type_name(v.type));
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+    unsigned size = 0;
+    const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> hash(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+    if (!hash || !EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr) || !EVP_DigestUpdate(hash.get(), head.data(), head.size()) ||
+        !EVP_DigestUpdate(hash.get(), v.bytes.data(), v.bytes.size()) || !EVP_DigestFinal_ex(hash.get(), digest.data(), &size))
+        throw Error(ErrorKind::internal, "OpenSSL offers no SHA-256");
+    std::string hex;
+    for (unsigned i = 0; i < size; ++i) hex += fmt::format("{:02x}", digest[i]);
+    return hex;
 }
 
 } // namespace clvr

@@ -2,7 +2,9 @@
 #include "host/volume/slabs.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
+#include <type_traits>
 
 namespace clvr {
 
@@ -24,32 +26,71 @@ const char* voxel_type_name(VoxelType t) {
     throw std::logic_error("voxel type");
 }
 
+namespace {
+
+/// Where a value falls between low and high.
+struct Binning {
+    double low, scale;
+    Binning(double low_value, double high_value)
+        : low(low_value), scale(high_value > low_value ? histogram_bins / (high_value - low_value) : 0.0) {}
+    std::size_t operator()(double value) const { return std::min(static_cast<std::size_t>((value - low) * scale), histogram_bins - 1); }
+};
+
+/// Counts each of the 2^8 or 2^16 values, in one pass.
+template <class T>
+void count_values(const Voxels& v, Histogram& h) {
+    constexpr int least = std::numeric_limits<T>::min(), greatest = std::numeric_limits<T>::max();
+    std::vector<std::uint64_t> counts(greatest - least + 1);
+    const std::size_t slab = static_cast<std::size_t>(v.dims[0]) * v.dims[1];
+    std::mutex merging;
+    for_slabs(v.dims[2], [&](int first, int last) {
+        std::vector<std::uint64_t> part(counts.size());
+        for (const T *p = v.data<T>() + first * slab, *const end = v.data<T>() + last * slab; p != end; ++p) ++part[*p - least];
+        const std::lock_guard lock(merging);
+        for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += part[i];
+    });
+    const auto used = [](std::uint64_t n) { return n > 0; };
+    h.low = least + (std::find_if(counts.begin(), counts.end(), used) - counts.begin());
+    h.high = greatest - (std::find_if(counts.rbegin(), counts.rend(), used) - counts.rbegin());
+    const Binning bin(h.low, h.high);
+    for (int value = static_cast<int>(h.low); value <= static_cast<int>(h.high); ++value) h.bins[bin(value)] += counts[value - least];
+}
+
+/// Range first, bins second.
+void count_floats(const Voxels& v, Histogram& h) {
+    const float* const voxels = v.data<float>();
+    const std::size_t slab = static_cast<std::size_t>(v.dims[0]) * v.dims[1];
+    std::mutex merging;
+    float low = voxels[0], high = voxels[0];
+    for_slabs(v.dims[2], [&](int first, int last) {
+        const auto [least, greatest] = std::minmax_element(voxels + first * slab, voxels + last * slab);
+        const std::lock_guard lock(merging);
+        low = std::min(low, *least);
+        high = std::max(high, *greatest);
+    });
+    h.low = low;
+    h.high = high;
+    const Binning bin(h.low, h.high);
+    for_slabs(v.dims[2], [&](int first, int last) {
+        std::vector<std::uint64_t> part(histogram_bins);
+        for (const float *p = voxels + first * slab, *const end = voxels + last * slab; p != end; ++p) ++part[bin(double{*p})];
+        const std::lock_guard lock(merging);
+        for (std::size_t b = 0; b < histogram_bins; ++b) h.bins[b] += part[b];
+    });
+}
+
+} // namespace
+
 Histogram stored_histogram(const Voxels& v) {
     Histogram h;
     h.bins.assign(histogram_bins, 0);
     if (v.count() == 0) return h;
     with_voxel_type(v.type, [&](auto zero) {
         using T = decltype(zero);
-        const T* const voxels = v.data<T>();
-        const std::size_t slab = static_cast<std::size_t>(v.dims[0]) * v.dims[1];
-        std::mutex merging;
-        T low = voxels[0], high = voxels[0];
-        for_slabs(v.dims[2], [&](int first, int last) {
-            const auto [least, greatest] = std::minmax_element(voxels + first * slab, voxels + last * slab);
-            const std::lock_guard lock(merging);
-            low = std::min(low, *least);
-            high = std::max(high, *greatest);
-        });
-        h.low = static_cast<double>(low);
-        h.high = static_cast<double>(high);
-        const double scale = h.high > h.low ? histogram_bins / (h.high - h.low) : 0.0;
-        for_slabs(v.dims[2], [&](int first, int last) {
-            std::vector<std::uint64_t> counts(histogram_bins);
-            for (const T *p = voxels + first * slab, *const end = voxels + last * slab; p != end; ++p)
-                ++counts[std::min(static_cast<std::size_t>((static_cast<double>(*p) - h.low) * scale), histogram_bins - 1)];
-            const std::lock_guard lock(merging);
-            for (std::size_t b = 0; b < histogram_bins; ++b) h.bins[b] += counts[b];
-        });
+        if constexpr (std::is_integral_v<T>)
+            count_values<T>(v, h);
+        else
+            count_floats(v, h);
     });
     return h;
 }

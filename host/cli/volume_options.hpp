@@ -1,0 +1,13 @@
+// The options that say how a volume is read: the same for every command that takes one.
+#pragma once
+#include "host/io/volume_file.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace clvr {
+
+/// Adds --frame, --series, --allow-gaps, --dims, --type, --spacing and --endian, which set `options`. A malformed value throws
+/// Error{usage}.
+void add_volume_options(CLI::App& command, VolumeReadOptions& options);
+
+} // namespace clvr
