@@ -5,7 +5,7 @@
 # Asks the network only when something is missing; uses sudo when not root.
 set -euo pipefail
 
-build=(build-essential cmake ninja-build pkg-config
+build=(build-essential cmake ninja-build
     ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd           # OpenCL, and a device that every machine has
     libinsighttoolkit5-dev zlib1g-dev                                 # volume files
     libopenexr-dev libpng-dev libstb-dev                              # pictures
