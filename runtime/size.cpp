@@ -4,21 +4,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <regex>
 
 namespace clvr {
 
 std::size_t parse_size(std::string_view text, const std::string& what) {
-    static const std::regex form(R"(\s*([0-9]{1,19}(?:\.[0-9]{1,9})?)\s*(?:([KMGT])(?:i?B)?)?\s*)", std::regex::icase);
-    std::match_results<std::string_view::const_iterator> match;
+    // number, factor, unit: each a run of its own characters, blanks between them
+    std::size_t at = 0;
+    const auto take = [&](const char* characters, std::size_t most) {
+        at = std::min(text.find_first_not_of(' ', at), text.size());
+        const std::size_t end = std::min({text.find_first_not_of(characters, at), text.size(), at + most});
+        std::string taken(text.substr(at, end - at));
+        at = end;
+        return taken;
+    };
+    const std::string number = take("0123456789.", 30), factor = take("KMGTkmgt", 1);
+    if (!factor.empty()) {
+        take("i", 1);
+        take("Bb", 1);
+    }
+    take("", 0);
     double bytes = 0;
-    if (std::regex_match(text.begin(), text.end(), match, form)) {
-        const std::string letter = match[2].str();
-        const std::size_t power = letter.empty() ? 0 : std::string_view("KMGTkmgt").find(letter[0]) % 4 + 1;
-        bytes = std::floor(std::ldexp(std::stod(match[1].str()), static_cast<int>(10 * power)));
+    if (at == text.size() && !number.empty() && number.front() != '.' && std::count(number.begin(), number.end(), '.') <= 1) {
+        const std::size_t power = factor.empty() ? 0 : std::string_view("KMGTkmgt").find(factor[0]) % 4 + 1;
+        bytes = std::floor(std::ldexp(std::stod(number), static_cast<int>(10 * power)));
     }
     if (!(bytes >= 1 && bytes < 0x1p60))
         throw Error(ErrorKind::usage, fmt::format("\"{}\" is not a size; write bytes, or a number with K, M or G, such as 512M", text),

@@ -6,17 +6,42 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <regex>
 #include <sstream>
+#include <string_view>
 
 namespace clvr {
 namespace fs = std::filesystem;
 namespace {
+
+/// A preprocessor directive: "include" and "\"x\" // why" of a line `#  include "x" // why`. Both empty for any other line.
+struct Directive {
+    std::string_view name, rest;
+};
+
+Directive directive_of(std::string_view line) {
+    const auto skip_blanks = [&] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
+    skip_blanks();
+    if (line.empty() || line.front() != '#') return {};
+    line.remove_prefix(1);
+    skip_blanks();
+    const auto end = std::find_if(line.begin(), line.end(), [](unsigned char c) { return !std::isalpha(c); });
+    const std::string_view name = line.substr(0, static_cast<std::size_t>(end - line.begin()));
+    line.remove_prefix(name.size());
+    skip_blanks();
+    return {name, line};
+}
+
+/// The x of `"x" ...`; empty when it does not begin with a quote.
+std::string quoted(std::string_view text) {
+    const std::size_t end = text.find('"', 1);
+    return text.empty() || text.front() != '"' || end == std::string_view::npos ? std::string() : std::string(text.substr(1, end - 1));
+}
 
 class Expander {
 public:
@@ -41,8 +66,6 @@ private:
     }
 
     void file(const std::string& path, const std::string& text, bool conditional) {
-        static const std::regex include(R"re(^\s*#\s*include\s*"([^"]+)".*$)re"), opens(R"(^\s*#\s*if.*$)"), closes(R"(^\s*#\s*endif.*$)"),
-            once(R"(^\s*#\s*pragma\s+once\s*$)");
         seen_[path] = Seen::open;
         line(fmt::format("#line 1 \"{}\"", path), path, 1);
         std::istringstream lines(text);
@@ -50,12 +73,15 @@ private:
         int depth = 0;
         for (int number = 1; std::getline(lines, current); ++number) {
             if (!current.empty() && current.back() == '\r') current.pop_back();
-            if (std::regex_match(current, once)) current.clear(); // the compiler sees one file
-            std::smatch match;
-            if (std::regex_match(current, opens)) ++depth;
-            if (std::regex_match(current, closes)) --depth;
-            if (!std::regex_match(current, match, include) || !included(path, match[1].str(), number, conditional || depth > 0))
+            const Directive directive = directive_of(current);
+            if (directive.name == "if" || directive.name == "ifdef" || directive.name == "ifndef") ++depth;
+            if (directive.name == "endif") --depth;
+            const std::string name = directive.name == "include" ? quoted(directive.rest) : std::string();
+            if (directive.name == "pragma" && directive.rest == "once") {
+                line("", path, number); // the compiler sees one file
+            } else if (name.empty() || !included(path, name, number, conditional || depth > 0)) {
                 line(current, path, number);
+            }
         }
         seen_[path] = conditional ? Seen::conditionally : Seen::always;
     }
@@ -114,17 +140,15 @@ Source expand_source(const std::string& path, const ReadKernelFile& read) { retu
 
 std::string located_log(const std::string& log, const Source& source, bool counts_whole_text) {
     if (!counts_whole_text) return log;
-    static const std::regex position(R"(^([^\s:]*):(\d{1,9})(:.*)$)");
     std::istringstream lines(log);
     std::string current, result;
     while (std::getline(lines, current)) {
-        std::smatch match;
-        if (std::regex_match(current, match, position)) {
-            const std::size_t number = std::stoul(match[2].str());
-            if (number >= 1 && number <= source.origins.size()) {
-                const Source::Origin& origin = source.origins[number - 1];
-                current = fmt::format("{}:{}{}", origin.file, origin.line, match[3].str());
-            }
+        const std::size_t colon = current.find_first_of(": \t");
+        char* end = nullptr;
+        const unsigned long number = colon == std::string::npos ? 0 : std::strtoul(current.c_str() + colon + 1, &end, 10);
+        if (number >= 1 && number <= source.origins.size() && current[colon] == ':' && *end == ':') {
+            const Source::Origin& origin = source.origins[number - 1];
+            current = fmt::format("{}:{}{}", origin.file, origin.line, end);
         }
         result += current + '\n';
     }
