@@ -49,9 +49,10 @@ typedef struct PhantomParams {
     int4 cells;     ///< xyz: cells
     float4 origin;  ///< xyz: position of voxel 0 [mm]; w: 1 / width of the ramp of partial volume [1/mm]
     float4 spacing; ///< xyz [mm]
+    float far[12];  ///< per body: its distance is kept within +-far, so that a part beyond its reach has exactly no effect
     uint key0, key1, pad0, pad1;
 } PhantomParams;
-CLVR_CHECK_SIZE(PhantomParams, 80);
+CLVR_CHECK_SIZE(PhantomParams, 128);
 
 CLVR_SHARED_END
 #endif

@@ -6,8 +6,6 @@
 #include "lib/math.clh"
 #include "shared/phantom.h"
 
-#define FAR 26.0f // distances are kept within +-FAR, so that a part beyond its reach has exactly no effect
-
 typedef struct {
     vfloat x, y, z;
 } Point;
@@ -17,6 +15,7 @@ typedef struct {
     __global const uint* start; // [cells * CLVR_BODIES + 1]
     __global const uint* list;
     uint first; // entry of this cell's first body in start
+    __constant PhantomParams* params;
 } Anatomy;
 
 inline vfloat length3(vfloat x, vfloat y, vfloat z) { return sqrt(fma(x, x, fma(y, y, fma(z, z, (vfloat)(1e-12f))))); }
@@ -49,7 +48,7 @@ inline vfloat part_distance(__global const PhantomPart* part, Point p) {
 }
 
 inline vfloat body_distance(const Anatomy* anatomy, int body, Point p) {
-    vfloat d = (vfloat)(FAR);
+    vfloat far = (vfloat)(anatomy->params->far[body]), d = far;
     uint end = anatomy->start[anatomy->first + body + 1];
     for (uint i = anatomy->start[anatomy->first + body]; i < end; ++i) {
         __global const PhantomPart* part = anatomy->parts + anatomy->list[i];
@@ -57,7 +56,7 @@ inline vfloat body_distance(const Anatomy* anatomy, int body, Point p) {
         if (!v_any(near)) continue;
         vfloat b = part_distance(part, p);
         vfloat joined = part->sign > 0 ? smooth_min(d, b, part->blend, part->quarter) : smooth_max(d, -b, part->blend, part->quarter);
-        d = v_select(near, v_clamp(joined, (vfloat)(-FAR), (vfloat)(FAR)), d);
+        d = v_select(near, v_clamp(joined, -far, far), d);
     }
     return d;
 }
@@ -160,7 +159,7 @@ inline vfloat tissue(const Anatomy* anatomy, Point p, Point folded, vfloat skin,
         paint((vfloat)(58.0f), (vfloat)(-70.0f), v_clamp(fma(fabs(n), (vfloat)(-14.0f), (vfloat)(0.8f)), (vfloat)(0.0f), (vfloat)(1.0f)));
     flesh = paint(flesh, (vfloat)(-95.0f), inside(-skin - fat_end, 0.7f));
     flesh = paint(flesh, (vfloat)(35.0f), inside(-skin - 2.0f, per_mm));
-    vfloat hu = paint((vfloat)(-1000.0f), flesh, inside(skin, per_mm));
+    vfloat hu = paint((vfloat)(-1000.0f), flesh, inside(skin, 0.6f * per_mm));
 
     vfloat cavity = body_distance(anatomy, CLVR_CAVITY, folded);
     vfloat orbit = body_distance(anatomy, CLVR_ORBIT, folded);
@@ -172,8 +171,10 @@ inline vfloat tissue(const Anatomy* anatomy, Point p, Point folded, vfloat skin,
     vfloat vault = cavity - wall;
     vmask outside = v_lt(fabs(vault), (vfloat)(4.0f));
     if (v_any(outside)) vault = v_select(outside, fma(suture(p, key + 6), (vfloat)(1.1f), vault), vault);
-    vault = v_select(v_lt(p.z, (vfloat)(-22.0f)), (vfloat)(FAR), vault); // no wall around the spinal canal
+    vault = v_select(v_lt(p.z, (vfloat)(-22.0f)), (vfloat)(9.0f), vault); // no wall around the spinal canal
     vfloat bone = smooth_min(vault, body_distance(anatomy, CLVR_FACE, folded), 5.0f, 0.05f);
+    vfloat socket_wall = v_max(orbit - 2.0f, -66.0f - p.y); // behind the rim
+    bone = smooth_min(bone, socket_wall, 3.0f, 1.0f / 12.0f);
     bone = smooth_max(smooth_max(bone, -cavity, 1.0f, 0.25f), -orbit, 2.0f, 0.125f);
     if (v_any(v_lt(bone, (vfloat)(2.0f)))) {
         vfloat spongy = fma(noise(p, 1.0f / 3.3f, key + 7), (vfloat)(420.0f), (vfloat)(480.0f));
@@ -201,7 +202,7 @@ inline vfloat tissue(const Anatomy* anatomy, Point p, Point folded, vfloat skin,
         vfloat content = brain(anatomy, p, folded, (vfloat)(9.0f), per_mm, key + 16);
         hu = paint(hu, content, inside(cavity, per_mm));
     }
-    if (has(anatomy, CLVR_VESSELS)) hu = paint(hu, (vfloat)(320.0f), inside(body_distance(anatomy, CLVR_VESSELS, p), per_mm));
+    if (has(anatomy, CLVR_VESSELS)) hu = paint(hu, (vfloat)(360.0f), inside(body_distance(anatomy, CLVR_VESSELS, p), per_mm));
     return hu;
 }
 
@@ -213,14 +214,14 @@ __kernel void phantom(__global short* out, __constant PhantomParams* params, __g
     uint key = params->key0;
     float per_mm = params->origin.w;
     int cell = (z0 / CLVR_CELL_Z * params->cells.y + y0 / CLVR_CELL_Y) * params->cells.x + x0 / CLVR_CELL_X;
-    Anatomy anatomy = {parts, start, list, (uint)(cell * CLVR_BODIES)};
+    Anatomy anatomy = {parts, start, list, (uint)(cell * CLVR_BODIES), params};
 
     vint ix = x0 + v_iota;
     Point p = {fma(v_float(ix), (vfloat)(params->spacing.x), (vfloat)(params->origin.x)),
                (vfloat)(fma((float)(y0), params->spacing.y, params->origin.y)),
                (vfloat)(fma((float)(z0), params->spacing.z, params->origin.z))};
     vfloat hu = (vfloat)(-1000.0f);
-    vfloat skin = (vfloat)(FAR);
+    vfloat skin = (vfloat)(9.0f);
     if (has(&anatomy, CLVR_SKIN)) {
         // No head is symmetric: a slow bend of space, at most CLVR_BEND mm (see the host's lists).
         vfloat unused;

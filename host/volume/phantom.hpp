@@ -1,0 +1,21 @@
+// Volumes that clvr computes itself.
+#pragma once
+#include "host/volume/voxels.hpp"
+#include "runtime/device.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace clvr {
+
+/// Voxels of the head that fill its box at about 1.1 mm.
+constexpr Int3 phantom_dims{176, 220, 232};
+
+/// A phantom by name: "head", a CT-like head in Hounsfield units (skin, skull, brain, vessels with contrast agent), face towards -y. It
+/// fills a fixed box of 194 x 242 x 255 mm, so `dims` set the spacing. The same bits on every device; `seed` changes its texture and noise.
+/// i16 and f32 hold Hounsfield units; the other types a linear scale of them, with slope and intercept set.
+/// Throws Error{usage} for another name or dims outside 1..4096.
+Voxels make_phantom(Device& device, const std::string& name, const Int3& dims = phantom_dims, VoxelType type = VoxelType::i16,
+                    std::uint64_t seed = 0);
+
+} // namespace clvr
