@@ -36,7 +36,7 @@ int packet_width(const Device& device) {
 }
 
 BrickLayout device_layout(const Device& device, const Classified& c) {
-    return brick_layout(*c.voxels, *c.grid, c.majorants, device.tunable("brick_log2", 4), device.max_alloc_bytes());
+    return brick_layout(*c.voxels, *c.grid, c.majorants, device.tunable("brick_log2", 5), device.max_alloc_bytes());
 }
 
 DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& params) {
@@ -51,7 +51,11 @@ DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayou
         pack_pool(*c.voxels, layout, k, upload_piece,
                   [&](const unsigned char* bytes, std::size_t size, std::size_t offset) { device.write(voxels_[k], bytes, size, offset); });
     }
-    defines_ = {{"CLVR_VOXEL", opencl_type(c.voxels->type)}, {"CLVR_POOLS", std::to_string(layout.pools)}};
+    const VoxelType type = c.voxels->type;
+    defines_ = {{"CLVR_VOXEL", opencl_type(type)},
+                {"CLVR_VOXEL_BITS", std::to_string(8 * voxel_bytes(type))},
+                {"CLVR_VOXEL_SIGNED", type == VoxelType::i8 || type == VoxelType::i16 ? "1" : "0"},
+                {"CLVR_POOLS", std::to_string(layout.pools)}};
 }
 
 BufferList DeviceVolume::arguments() const {

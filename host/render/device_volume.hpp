@@ -14,8 +14,8 @@ struct Classified {
     std::vector<float> majorants;
 };
 
-/// Where the bricks of a classified volume go on a device. Brick edge: tunable "brick_log2" (default 4: 17^3 voxels, 1.2 times the voxels'
-/// bytes).
+/// Where the bricks of a classified volume go on a device. Brick edge: tunable "brick_log2" (default 5: 35^3 voxels, at most 1.31 times the
+/// voxels' bytes).
 BrickLayout device_layout(const Device& device, const Classified& c);
 
 class DeviceVolume {

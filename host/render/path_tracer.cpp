@@ -18,6 +18,8 @@ PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTa
     const bool cpu = device.facts().type == DeviceType::cpu;
     capacity_ = static_cast<std::uint32_t>(std::max(16, device.tunable("wave_paths", cpu ? 1 << 16 : 1 << 20)));
 
+    per_packet_ = {static_cast<std::size_t>(device.tunable("packet_group", width_ == 1 ? 64 : 1))};
+    per_path_ = {static_cast<std::size_t>(device.tunable("shade_group", 64))};
     Defines packet = volume.defines(), scalar = volume.defines();
     packet["CLVR_WIDTH"] = std::to_string(width_);
     scalar["CLVR_WIDTH"] = "1";
@@ -34,7 +36,7 @@ PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTa
     path_id_ = device_.buffer(n * 8, "path numbers");
     for (Buffer* b : {&origin_, &heading_, &weight_, &radiance_, &shadow_heading_, &shadow_light_})
         *b = device_.buffer(n * 16, "path state");
-    for (Buffer* b : {&active_[0], &active_[1], &state_, &shadowed_}) *b = device_.buffer(n * 4, "path lists");
+    for (Buffer* b : {&active_, &next_active_, &state_, &shadowed_}) *b = device_.buffer(n * 4, "path lists");
     counts_ = device_.buffer(8, "path counts");
     mean_ = device_.buffer(n * 16, "pixel means");
     deviation_ = device_.buffer(n * 16, "pixel deviations");
@@ -63,30 +65,58 @@ bool PathTracer::trace(std::uint32_t first_pixel, std::uint32_t pixels, std::uin
     return true;
 }
 
-void PathTracer::trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples) {
-    const BufferList volume = volume_.arguments();
-    const BufferList paths{&path_id_, &origin_, &heading_, &weight_, &radiance_, &shadow_heading_, &shadow_light_};
-    const Range per_packet{static_cast<std::size_t>(device_.tunable("packet_group", width_ == 1 ? 64 : 1))};
-    const Range per_path{static_cast<std::size_t>(device_.tunable("shade_group", 64))};
-    const auto packets = [&](std::uint32_t count) { return Range{(count + width_ - 1) / width_}; };
+void PathTracer::fly_camera_rays(std::uint32_t pixels) {
+    for (std::uint32_t first = 0; first < pixels; first += capacity_) {
+        const std::uint32_t n = std::min(capacity_, pixels - first);
+        start_paths(first, n, 0, 1);
+        fly(n, 0);
+    }
+    device_.finish();
+}
 
-    std::uint32_t active = pixels * samples, listed = 0;
-    device_.launch(camera_rays_, {active}, per_path, {active * 92.0, 0}, light_.render(), paths, active_[0], active, first_pixel,
-                   first_sample, samples);
+void PathTracer::trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples) {
+    start_paths(first_pixel, pixels, first_sample, samples);
+    std::uint32_t active = pixels * samples;
     for (std::uint32_t bounce = 0; active > 0; ++bounce) {
-        device_.launch(free_flight_, packets(active), per_packet, {}, volume, light_.render(), paths, active_[listed], active, bounce);
-        device_.fill(counts_, 0);
-        device_.launch(shade_, {active}, per_path, {}, volume, light_.arguments(), lobe_, paths, active_[listed], state_, active, bounce);
-        device_.launch(compact_, {(active + compact_run - 1) / compact_run}, {1}, {active * 20.0, 0}, active_[listed], state_, active,
-                       active_[1 - listed], shadowed_, counts_);
-        std::uint32_t counts[2];
-        device_.read(counts_, counts, sizeof counts);
-        if (counts[1] > 0)
-            device_.launch(transmittance_, packets(counts[1]), per_packet, {}, volume, light_.render(), paths, shadowed_, counts[1],
-                           bounce);
-        active = counts[0];
-        listed = 1 - listed;
+        fly(active, bounce);
+        shade(active, bounce);
+        const auto [going, lit] = list_survivors(active);
+        gather_light(lit, bounce);
+        active = going;
     }
 }
+
+void PathTracer::start_paths(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples) {
+    const std::uint32_t n = pixels * samples;
+    device_.launch(camera_rays_, {n}, per_path_, {n * 92.0, 0}, light_.render(), paths(), active_, n, first_pixel, first_sample, samples);
+}
+
+void PathTracer::fly(std::uint32_t active, std::uint32_t bounce) {
+    device_.launch(free_flight_, packets(active), per_packet_, {}, volume_.arguments(), light_.render(), paths(), active_, active, bounce);
+}
+
+void PathTracer::shade(std::uint32_t active, std::uint32_t bounce) {
+    device_.launch(shade_, {active}, per_path_, {}, volume_.arguments(), light_.arguments(), lobe_, paths(), active_, state_, active,
+                   bounce);
+}
+
+PathTracer::Survivors PathTracer::list_survivors(std::uint32_t active) {
+    Survivors counts;
+    device_.fill(counts_, 0);
+    device_.launch(compact_, {(active + compact_run - 1) / compact_run}, {1}, {active * 20.0, 0}, active_, state_, active, next_active_,
+                   shadowed_, counts_);
+    device_.read(counts_, &counts, sizeof counts);
+    std::swap(active_, next_active_);
+    return counts;
+}
+
+void PathTracer::gather_light(std::uint32_t lit, std::uint32_t bounce) {
+    if (lit == 0) return;
+    device_.launch(transmittance_, packets(lit), per_packet_, {}, volume_.arguments(), light_.render(), paths(), shadowed_, lit, bounce);
+}
+
+BufferList PathTracer::paths() const { return {&path_id_, &origin_, &heading_, &weight_, &radiance_, &shadow_heading_, &shadow_light_}; }
+
+Range PathTracer::packets(std::uint32_t count) const { return {(count + width_ - 1) / width_}; }
 
 } // namespace clvr

@@ -24,21 +24,35 @@ public:
     bool trace(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples, PixelSums& sums,
                std::size_t offset, const std::atomic<bool>& cancelled);
 
+    /// The first flight alone of one sample of pixels 0 .. pixels - 1, for benchmarks; waits for it.
+    void fly_camera_rays(std::uint32_t pixels);
+
     /// Pixels that fill a wave at a number of samples each.
     std::uint32_t pixels_per_wave(std::uint32_t samples) const;
 
 private:
+    struct Survivors {
+        std::uint32_t going, lit;
+    };
     void trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples);
+    void start_paths(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples);
+    void fly(std::uint32_t active, std::uint32_t bounce);
+    void shade(std::uint32_t active, std::uint32_t bounce);
+    Survivors list_survivors(std::uint32_t active);
+    void gather_light(std::uint32_t lit, std::uint32_t bounce);
+    BufferList paths() const;
+    Range packets(std::uint32_t count) const;
 
     Device device_;
     const DeviceVolume& volume_;
     const LightTables& light_;
     std::uint32_t capacity_;
     int width_;
+    Range per_packet_, per_path_; // local sizes
     Kernel camera_rays_, free_flight_, shade_, compact_, transmittance_, accumulate_;
     Buffer lobe_;
     Buffer path_id_, origin_, heading_, weight_, radiance_, shadow_heading_, shadow_light_;
-    Buffer active_[2], state_, shadowed_, counts_, mean_, deviation_;
+    Buffer active_, next_active_, state_, shadowed_, counts_, mean_, deviation_;
 };
 
 } // namespace clvr

@@ -56,19 +56,20 @@ std::size_t deal(BrickLayout& layout, std::size_t capacity, std::size_t bytes_pe
     return layout.pool_bytes.size();
 }
 
-/// One brick, rows and slices packed. An axis of one voxel stores it twice.
+/// One brick, rows and slices packed; the volume's border voxels repeat outside it.
 template <class T>
 void pack_brick(const Voxels& v, const BrickLayout& layout, std::size_t brick, T* to) {
     const Int3 low = layout.brick_low(brick), length = layout.brick_length(brick);
+    const auto inside = [&](int at, int axis) { return std::clamp(at, 0, v.dims[axis] - 1); };
+    const int first = inside(low[0], 0), last = inside(low[0] + length[0] - 1, 0);
     for (int z = 0; z < length[2]; ++z)
         for (int y = 0; y < length[1]; ++y) {
-            const std::size_t row_z = std::min(low[2] + z, v.dims[2] - 1), row_y = std::min(low[1] + y, v.dims[1] - 1);
-            const T* row = v.data<T>() + (row_z * v.dims[1] + row_y) * v.dims[0] + low[0];
-            if (v.dims[0] == 1)
-                to[0] = to[1] = row[0];
-            else
-                std::memcpy(to, row, length[0] * sizeof(T));
-            to += length[0];
+            const T* row = v.data<T>() + (static_cast<std::size_t>(inside(low[2] + z, 2)) * v.dims[1] + inside(low[1] + y, 1)) * v.dims[0];
+            T* const end = to + length[0];
+            for (int x = low[0]; x < first; ++x) *to++ = row[first];
+            std::memcpy(to, row + first, (last - first + 1) * sizeof(T));
+            to += last - first + 1;
+            while (to < end) *to++ = row[last];
         }
 }
 
@@ -80,14 +81,14 @@ std::size_t BrickLayout::present() const { return offset.size() - std::count(off
 
 Int3 BrickLayout::brick_low(std::size_t brick) const {
     const std::size_t row = brick / bricks[0];
-    return {static_cast<int>(brick % bricks[0]) << log2_edge, static_cast<int>(row % bricks[1]) << log2_edge,
-            static_cast<int>(row / bricks[1]) << log2_edge};
+    const Int3 at{static_cast<int>(brick % bricks[0]), static_cast<int>(row % bricks[1]), static_cast<int>(row / bricks[1])};
+    return {(at[0] << log2_edge) - 1, (at[1] << log2_edge) - 1, (at[2] << log2_edge) - 1};
 }
 
 Int3 BrickLayout::brick_length(std::size_t brick) const {
     const Int3 low = brick_low(brick);
     Int3 length;
-    for (int a = 0; a < 3; ++a) length[a] = std::min((1 << log2_edge) + 1, std::max(dims[a], 2) - low[a]);
+    for (int a = 0; a < 3; ++a) length[a] = std::min(1 << log2_edge, std::max(dims[a] - 1, 1) - (low[a] + 1)) + 3;
     return length;
 }
 

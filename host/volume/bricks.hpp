@@ -44,9 +44,10 @@ struct TableIndex {
 /// Milliseconds: reads ranges, not voxels.
 std::vector<float> majorants(const MajorantGrid& grid, const TransferTable& table);
 
-/// Where each brick lies. Brick edge 2^log2_edge voxels plus a one-voxel apron at its upper side, cropped to the volume: brick b holds
-/// voxels edge*b .. min(edge*b+edge, n-1), x fastest, rows and slices packed (stride of x: its length). An axis of one voxel stores it
-/// twice.
+/// Where each brick lies. Brick b of an axis serves the bases (lower voxels of an interpolation) edge*b .. edge*b+edge-1 and holds all that
+/// their interpolation and gradient touch: voxels edge*b-1 .. edge*b+edge+1, an apron of one voxel below and two above, cropped to the
+/// bases that the volume has; beyond the volume's border its border voxels repeat. Rows and slices are packed, x fastest. So a position's
+/// whole 4x4x4 neighbourhood lies in one brick. Edge 32 stores at most (35/32)^3 = 1.31 times the voxels.
 struct BrickLayout {
     int log2_edge = 4;
     Int3 bricks{1, 1, 1};
@@ -58,8 +59,8 @@ struct BrickLayout {
     static constexpr std::uint32_t absent = 0xffffffffu;
     std::size_t stored_bytes() const;        ///< sum of pool_bytes
     std::size_t present() const;             ///< bricks that are stored
-    Int3 brick_low(std::size_t brick) const; ///< its first voxel
-    /// Voxels along each axis: min(edge + 1, max(n, 2) - edge*b).
+    Int3 brick_low(std::size_t brick) const; ///< its first voxel, -1 at the volume's border
+    /// Voxels along each axis: min(edge, max(n-1, 1) - edge*b) + 3.
     Int3 brick_length(std::size_t brick) const;
     std::size_t brick_voxels(std::size_t brick) const;
 };
