@@ -47,7 +47,8 @@ std::vector<float> majorants(const MajorantGrid& grid, const TransferTable& tabl
 /// Where each brick lies. Brick b of an axis serves the bases (lower voxels of an interpolation) edge*b .. edge*b+edge-1 and holds all that
 /// their interpolation and gradient touch: voxels edge*b-1 .. edge*b+edge+1, an apron of one voxel below and two above, cropped to the
 /// bases that the volume has; beyond the volume's border its border voxels repeat. Rows and slices are packed, x fastest. So a position's
-/// whole 4x4x4 neighbourhood lies in one brick. Edge 32 stores at most (35/32)^3 = 1.31 times the voxels.
+/// whole 4x4x4 neighbourhood lies in one brick. Edge 32 stores at most (35/32)^3 = 1.31 times the voxels; an axis of n < 16 voxels adds a
+/// factor of (n+2)/n instead.
 struct BrickLayout {
     int log2_edge = 4;
     Int3 bricks{1, 1, 1};

@@ -76,7 +76,7 @@ __kernel void shade(VOLUME_ARGS, LIGHT_ARGS, __global const float* lobe, PATH_AR
     if (strength > 0.0f) {
         bool goes_on = true;
         if (bounce >= ROULETTE_FROM || strength < 0x1p-60f) {
-            float survival = v_min(strength, bounce >= 64 ? 0.99f : 1.0f); // an unlimited path in a white medium ends, too
+            float survival = v_min(strength, bounce >= 1024 ? 0.999f : 1.0f); // an unlimited path in a white medium ends, too
             goes_on = v_uniform(b.w) < survival;
             throughput = scaled(throughput, 1.0f / v_max(survival, 0x1p-100f));
         }
