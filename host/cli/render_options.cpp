@@ -154,9 +154,9 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--key-elevation", o.key_elevation, "Height of the key light [45 degrees]")->group("Light");
     c.add_option("--headlight", o.headlight, "Irradiance of a light from the camera [0]")->group("Light");
 
-    c.add_option("--azimuth", o.azimuth, "Camera: degrees around the vertical axis; 0 faces a patient, 90 sees the left side")
+    c.add_option("--azimuth", o.azimuth, "Camera: degrees around the vertical axis; 0 faces a patient, 90 sees the left side [30]")
         ->group("Camera");
-    c.add_option("--elevation", o.elevation, "Camera: degrees above the horizon")->group("Camera");
+    c.add_option("--elevation", o.elevation, "Camera: degrees above the horizon [12]")->group("Camera");
     c.add_option("--zoom", o.zoom, "Camera: above 1 enlarges [1]")->group("Camera");
     c.add_option("--fov", o.fov, "Camera: vertical field of view [30 degrees]")->group("Camera");
     c.add_option("--eye", o.eye, "Camera: position in world space [mm], with --target")->type_name("X,Y,Z")->group("Camera");

@@ -29,15 +29,17 @@ std::uint64_t mixed(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-/// The key light: direction, disc and radiance such that key 1 brings a white Lambert surface that faces it to radiance 1 under the default
-/// sky.
-void set_key_light(shared::RenderParams& p, const Light& light, double camera_azimuth, double sky_facing, double other_power) {
+/// The default light brings a white Lambert surface that faces the key to radiance 1: this share of it from the sky, the rest from the key.
+constexpr double sky_share = 0.42;
+
+/// The key light: direction, disc, radiance. `other_power` is the irradiance from elsewhere: light samples are shared out by irradiance.
+void set_key_light(shared::RenderParams& p, const Light& light, double camera_azimuth, double other_power) {
     const double azimuth = (camera_azimuth + light.key_azimuth) * radian, elevation = light.key_elevation * radian;
     const Double3 key{std::cos(elevation) * std::sin(azimuth), -std::cos(elevation) * std::cos(azimuth), std::sin(elevation)};
     const Double3 side = unit(std::abs(key[2]) < 0.9 ? cross({0, 0, 1}, key) : cross({1, 0, 0}, key)), above = cross(key, side);
     const bool directional = light.key_angle <= 0;
     const double cosine = directional ? 1 : std::cos(light.key_angle / 2 * radian);
-    const double irradiance = light.key * (1 - sky_facing) * pi, solid_angle = 2 * pi * (1 - cosine);
+    const double irradiance = light.key * (1 - sky_share) * pi, solid_angle = 2 * pi * (1 - cosine);
     const double facing = pi * (1 - cosine * cosine); // integral of the cosine over the disc
     const double radiance = directional ? irradiance : irradiance / facing;
     const double head = light.headlight, all = irradiance + head + other_power;
@@ -101,14 +103,15 @@ shared::RenderParams render_params(const Scene& scene, const Voxels& v, const Vi
     p.phase_g = static_cast<float>(scene.phase_g);
     p.mode = static_cast<int>(scene.mode);
 
-    // The sky's radiance is 0.6 + 0.3 z: 0.3 below, 0.9 above. A black one keeps a density to divide by.
+    // The sky's radiance is proportional to 0.6 + 0.3 z: 0.3 below, 0.9 above. A black environment keeps a density to divide by.
     const Light& light = scene.light;
     const double level = std::max(light.level, 1e-20);
-    const double sky_facing = 0.6 + 0.2 * std::sin(light.key_elevation * radian); // of a white Lambert surface that faces the key
     double power = pi * level;
     if (light.environment == Light::Environment::sky) {
-        p.sky = {static_cast<float>(0.6 * level), static_cast<float>(0.3 * level), 1, 0};
-        power *= sky_facing;
+        const double facing = 0.6 + 0.2 * std::sin(light.key_elevation * radian); // radiance of a white Lambert surface that faces the key
+        const double scale = level * sky_share / facing;
+        p.sky = {static_cast<float>(0.6 * scale), static_cast<float>(0.3 * scale), 1, 0};
+        power = pi * level * sky_share;
     } else {
         const double turn = light.image_rotation * radian;
         p.sky = {static_cast<float>(level), 0, static_cast<float>(std::cos(turn)), static_cast<float>(std::sin(turn))};
@@ -117,7 +120,7 @@ shared::RenderParams render_params(const Scene& scene, const Voxels& v, const Vi
         p.environment_width = environment.width, p.environment_height = environment.height;
         power = pi * environment.mean_luminance;
     }
-    set_key_light(p, light, view_azimuth(view, scene.camera.azimuth), sky_facing, power);
+    set_key_light(p, light, view_azimuth(view, scene.camera.azimuth), power);
 
     const std::uint64_t key = mixed(mixed(scene.seed) ^ mixed(static_cast<std::uint64_t>(scene.view) + 0x5EED));
     p.key0 = static_cast<std::uint32_t>(key), p.key1 = static_cast<std::uint32_t>(key >> 32);

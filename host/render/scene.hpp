@@ -20,8 +20,8 @@ enum class Shading { automatic, phase, gradient };
 struct Camera {
     bool orthographic = false;
     double fov = 30;                    ///< vertical field of view [degrees]; the framing distance follows from it
-    double azimuth = 0;                 ///< [degrees] around +z; 0 looks along +y (a patient's face), 90 from the patient's left (from +x)
-    double elevation = 0;               ///< [degrees] above the horizontal plane, -90..90
+    double azimuth = 30;                ///< [degrees] around +z; 0 looks along +y (a patient's face), 90 from the patient's left (from +x)
+    double elevation = 12;              ///< [degrees] above the horizontal plane, -90..90
     double zoom = 1;                    ///< > 1 enlarges (a narrower view from the same place)
     std::optional<Double3> eye, target; ///< world [mm]; both or neither
     Double3 up{0, 0, 1};
