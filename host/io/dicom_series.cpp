@@ -17,7 +17,8 @@ constexpr double tolerance = 0.1;
 
 bool alike(const DicomSlice& a, const DicomSlice& b) {
     constexpr double same_direction = 1e-3;
-    return a.columns == b.columns && a.rows == b.rows && a.bits_allocated == b.bits_allocated && a.is_signed == b.is_signed &&
+    const DicomPixels &p = a.pixels, &q = b.pixels;
+    return p.columns == q.columns && p.rows == q.rows && p.bits_allocated == q.bits_allocated && p.is_signed == q.is_signed &&
            norm(a.row - b.row) < same_direction && norm(a.column - b.column) < same_direction &&
            std::abs(a.spacing_i - b.spacing_i) < 1e-3 * a.spacing_i && std::abs(a.spacing_j - b.spacing_j) < 1e-3 * a.spacing_j;
 }
@@ -91,13 +92,16 @@ std::vector<std::size_t> choose_frame(std::vector<Place>& places, const std::vec
     return chosen;
 }
 
-/// The distance of neighbours: the median of those distances that are not gaps.
+/// The distance of neighbours: the median of the largest group of distances that are alike (others are gaps or slices out of step).
 double slice_step(const std::vector<Place>& places) {
     std::vector<double> steps;
     for (std::size_t k = 1; k < places.size(); ++k) steps.push_back(places[k].along - places[k - 1].along);
     std::sort(steps.begin(), steps.end());
-    const auto gaps = std::upper_bound(steps.begin(), steps.end(), 1.5 * steps.front());
-    return steps[static_cast<std::size_t>(gaps - steps.begin()) / 2];
+    auto first = steps.begin(), last = first;
+    for (auto begin = steps.begin(); begin != steps.end(); ++begin)
+        if (const auto end = std::upper_bound(begin, steps.end(), *begin * (1 + tolerance)); end - begin > last - first)
+            first = begin, last = end;
+    return first[(last - first) / 2];
 }
 
 /// Lays the places on a regular lattice; a lattice slice without a file is a gap.

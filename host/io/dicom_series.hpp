@@ -1,5 +1,6 @@
 // Which DICOM slices make a volume, and where each lies.
 #pragma once
+#include "host/io/dicom_file.hpp"
 #include "host/volume/geometry.hpp"
 
 #include <cstddef>
@@ -8,15 +9,20 @@
 
 namespace clvr {
 
+/// How the pixels of a slice are stored.
+struct DicomPixels {
+    int columns = 0, rows = 0, bits_allocated = 16, bits_stored = 16;
+    bool is_signed = false, inverse = false; ///< inverse: MONOCHROME1
+    std::size_t count() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+    std::size_t bytes() const { return count() * static_cast<std::size_t>(bits_allocated) / 8; }
+};
+
 /// What the header of one slice says. Patient coordinates are LPS [mm], as clvr's world.
 struct DicomSlice {
     std::string path, series, description, instance_uid, modality;
-    long instance = 0, acquisition = 0; ///< InstanceNumber, AcquisitionNumber or TemporalPositionIdentifier
-    int columns = 0, rows = 0;
-    int bits_allocated = 0, bits_stored = 0, high_bit = 0;
-    bool is_signed = false;
-    bool inverse = false; ///< MONOCHROME1
-    bool compressed = false;
+    double instance = 0, acquisition = 0; ///< InstanceNumber, AcquisitionNumber or TemporalPositionIdentifier
+    DicomFile file;
+    DicomPixels pixels;
     double slope = 1, intercept = 0;
     Double3 position{0, 0, 0};             ///< centre of the first voxel
     Double3 row{1, 0, 0}, column{0, 1, 0}; ///< unit directions along a row (i) and along a column (j)

@@ -129,9 +129,9 @@ Voxels read_folder(const std::string& path, const VolumeReadOptions& options) {
         if (!entry.is_regular_file()) continue;
         const std::string head = read_head(entry.path().string(), 132);
         const Format format = format_of_head(head);
-        if (format == Format::dicom || format_of_name(lower(entry.path().filename().string())) == Format::dicom)
-            return read_dicom(path, options);
-        if (format == Format::tiff) tiffs.push_back(entry.path());
+        const Format by_name = format_of_name(lower(entry.path().filename().string()));
+        if (format == Format::dicom || by_name == Format::dicom) return read_dicom(path, options);
+        if (format == Format::tiff || by_name == Format::tiff) tiffs.push_back(entry.path());
     }
     if (!tiffs.empty()) return read_tiff_folder(path, tiffs, options);
     bad_file(path, "the folder holds neither DICOM nor TIFF slices (folders inside it are not searched)");
@@ -171,6 +171,10 @@ Voxels read_volume(const std::string& path, const VolumeReadOptions& options) {
     try {
         Voxels v = read_any(path, options);
         repair(v);
+        for (int i = 0; i < 3; ++i) { // -0 becomes 0
+            v.geometry.origin[i] += 0.0;
+            for (double& x : v.geometry.direction.row[i]) x += 0.0;
+        }
         const bool raw = v.format == "RAW", tiff = starts_with(v.format, "TIFF");
         if (!raw && (!options.type.empty() || !options.endian.empty()))
             v.notes.push_back("--type and --endian are for RAW files: the file's own were taken");

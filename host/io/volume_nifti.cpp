@@ -200,7 +200,7 @@ Geometry geometry(const NiftiHeader& h, const std::string& path) {
     }
     for (int j = 0; j < 3; ++j) {
         g.spacing[j] = norm(axes.column(j));
-        for (int i = 0; i < 3; ++i) g.direction.row[i][j] = axes.row[i][j] / g.spacing[j] + 0.0; // no -0
+        for (int i = 0; i < 3; ++i) g.direction.row[i][j] = axes.row[i][j] / g.spacing[j];
     }
     return g;
 }

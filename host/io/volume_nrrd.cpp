@@ -41,8 +41,10 @@ NrrdHeader parse_header(const std::string& path) {
                 h.segmentation = h.segmentation || name.rfind("segment0_", 0) == 0;
             } else {
                 name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
-                if (!h.fields.emplace(name, trimmed(line.substr(colon + 1))).second)
-                    bad_file(path, "the NRRD field \"{}\" stands twice", name);
+                const std::string_view value = trimmed(line.substr(colon + 1));
+                if (name == "datafile" && (lower_case(value).rfind("list", 0) == 0 || value.find('%') != std::string_view::npos))
+                    bad_file(path, "voxels in many files (data file: {:.40}) are not read: save the volume as one .nrrd", value);
+                if (!h.fields.emplace(name, value).second) bad_file(path, "the NRRD field \"{}\" stands twice", name);
             }
         }
         if (at >= text.size()) break;
@@ -121,8 +123,6 @@ void place_payload(Container& c, const NrrdHeader& h, const std::string& path) {
         c.coding = Container::Coding::text;
     else if (encoding != "raw")
         bad_file(path, "NRRD encoding \"{}\" is not read: save it as raw or gzip", encoding);
-    if (lower_case(data).rfind("list", 0) == 0 || data.find('%') != std::string::npos)
-        bad_file(path, "voxels in many files (data file: {:.40}) are not read: save the volume as one .nrrd", data);
     c.data_path = data.empty() ? path : beside(path, data);
     c.offset = data.empty() ? h.bytes : 0;
     const auto skip = parse_integers(optional_field(h, "byteskip", "0"), 1, -1, "\"byte skip\"", path).front();

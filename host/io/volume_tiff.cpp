@@ -3,6 +3,7 @@
 #include "host/io/volume_samples.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdarg>
@@ -23,8 +24,7 @@ public:
     explicit TiffFile(const std::string& path) : path_(path), handle_(nullptr, &TIFFClose) {
         const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
         TIFFOpenOptionsSetErrorHandlerExtR(options.get(), &TiffFile::complain, this);
-        TIFFOpenOptionsSetWarningHandlerExtR(
-            options.get(), [](TIFF*, void*, const char*, const char*, va_list) { return 1; }, nullptr);
+        TIFFOpenOptionsSetWarningHandlerExtR(options.get(), &TiffFile::warn, this);
         handle_.reset(TIFFOpenExt(path.c_str(), "r", options.get()));
         if (!handle_) fail();
     }
@@ -47,6 +47,10 @@ private:
         std::vsnprintf(text, sizeof text, format, arguments);
         static_cast<TiffFile*>(self)->complaint_ = text;
         return 1;
+    }
+    /// Most warnings are of unknown tags; that of byte counts means that libtiff guesses where the pixels are.
+    static int warn(TIFF* tiff, void* self, const char* module, const char* format, va_list arguments) {
+        return std::strstr(format, "ByteCount") ? complain(tiff, self, module, format, arguments) : 1;
     }
 
     std::string path_, complaint_;
@@ -115,6 +119,21 @@ void check_extents(const TiffFile& file, const Page& page) {
     check_capacity(page_bytes, plain ? stored : stored * greatest_ratio, file.path());
 }
 
+/// libtiff takes a directory whose link to the next one is cut off for the last: the file must hold the link of the current one.
+void check_link(const TiffFile& file) {
+    const bool wide = TIFFIsBigTIFF(file.get());
+    const std::size_t count_bytes = wide ? 8 : 2, entry_bytes = wide ? 20 : 12, link_bytes = wide ? 8 : 4;
+    const std::uint64_t offset = TIFFCurrentDirOffset(file.get()), size = std::filesystem::file_size(file.path());
+    std::array<unsigned char, 8> bytes{};
+    ByteStream stream(file.path(), ByteStream::Coding::plain, offset);
+    std::uint64_t entries = 0;
+    if (stream.read(bytes.data(), count_bytes) == count_bytes)
+        for (std::size_t i = 0; i < count_bytes; ++i) entries = entries << 8 | bytes[TIFFIsBigEndian(file.get()) ? i : count_bytes - 1 - i];
+    const std::uint64_t end = offset + count_bytes + entries * entry_bytes + link_bytes;
+    if (end > size)
+        bad_file(file.path(), "page {} ends at byte {}, the file has {}: it is truncated", TIFFCurrentDirectory(file.get()), end, size);
+}
+
 /// Where the pages are that are slices: not thumbnails. Every page is checked before the first is decoded.
 std::vector<toff_t> slices_of(const TiffFile& file, const Page& first) {
     std::vector<toff_t> pages;
@@ -125,6 +144,7 @@ std::vector<toff_t> slices_of(const TiffFile& file, const Page& first) {
                      TIFFCurrentDirectory(file.get()), p.width, p.height, sample_type_name(p.type), first.width, first.height,
                      sample_type_name(first.type));
         check_extents(file, first);
+        check_link(file);
         pages.push_back(TIFFCurrentDirOffset(file.get()));
     } while (TIFFReadDirectory(file.get()));
     if (!file.complaint().empty()) file.fail();
@@ -211,8 +231,6 @@ Voxels read_tiff(const std::string& path, const std::vector<std::string>& files,
     const auto calibration = imagej_spacing(head, imagej);
     std::vector<toff_t> pages = slices_of(head, page);
     const bool folder = files.size() > 1;
-    if (folder && pages.size() > 1)
-        bad_file(files.front(), "it has {} pages although it stands in a folder of slices: name this file alone", pages.size());
 
     std::int64_t frames = 1;
     if (!folder) {
@@ -240,22 +258,21 @@ Voxels read_tiff(const std::string& path, const std::vector<std::string>& files,
     const std::size_t page_samples = std::size_t{page.width} * page.height, slice_bytes = page_samples * sample_bytes(page.type);
     allocate(v);
     std::vector<unsigned char> scratch(is_kept(page.type) ? 0 : slice_bytes);
-    const auto decode = [&](const TiffFile& file, std::size_t slice) {
+    const auto decode = [&](const TiffFile& file, toff_t at, std::size_t slice) {
+        if (!TIFFSetSubDirectory(file.get(), at)) file.fail();
         decode_page(file, page, scratch.empty() ? v.bytes.data() + slice * slice_bytes : scratch.data());
         if (!scratch.empty()) store_samples(scratch.data(), page.type, page_samples, v, slice * page_samples);
     };
     for (std::size_t slice = 0; slice < slices; ++slice) {
         if (!folder) {
-            if (!TIFFSetSubDirectory(head.get(), pages[slice])) head.fail();
-            decode(head, slice);
+            decode(head, pages[slice], slice);
             continue;
         }
         const TiffFile file(files[slice]);
-        if (const Page p = page_of(file); !(p == page))
-            bad_file(files[slice], "the slice is {} x {} {}, the first is {} x {} {}: all must be alike", p.width, p.height,
-                     sample_type_name(p.type), page.width, page.height, sample_type_name(page.type));
-        check_extents(file, page);
-        decode(file, slice);
+        const auto own = slices_of(file, page);
+        if (own.size() > 1)
+            bad_file(files[slice], "it has {} pages although it stands in a folder of slices: name this file alone", own.size());
+        decode(file, own.front(), slice);
     }
     return v;
 }

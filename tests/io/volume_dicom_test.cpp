@@ -1,0 +1,243 @@
+// DICOM: which slices make a volume, in which order, and what is refused.
+#include "host/io/volume_file.hpp"
+#include "tests/io/volume_writers.hpp"
+
+#include <gmock/gmock.h>
+
+namespace clvr::test {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+class VolumeDicom : public ::testing::Test {
+protected:
+    Folder folder;
+    Sample s{Int3{5, 4, 8}};
+    VolumeReadOptions options;
+
+    std::string put(const std::string& name, const DicomFields& f) { return write(folder / ("series/" + name), dicom(f)); }
+    void put_all() {
+        for (int k = 0; k < s.dims[2]; ++k) put(fmt::format("{}.dcm", k), dicom_slice(s, k));
+    }
+    Voxels read() { return read_volume(folder / "series", options); }
+    bool is_sample(const Voxels& v) const {
+        return v.dims == s.dims && std::equal(s.voxels.begin(), s.voxels.end(), v.data<std::int16_t>());
+    }
+};
+
+TEST_F(VolumeDicom, OrderIsByPositionWhateverTheNames) {
+    for (int k = 0; k < s.dims[2]; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.instance = 100 - k;                   // numbered from the other end
+        put(fmt::format("{}", (k * 5) % 8), f); // neither names nor endings tell
+    }
+    const Voxels v = read();
+    EXPECT_TRUE(is_sample(v));
+    EXPECT_NEAR(v.geometry.spacing[2], 2, 1e-9);
+    EXPECT_NEAR(v.geometry.origin[2], 31, 1e-9);
+    EXPECT_TRUE(v.notes.empty()) << v.notes.front();
+    EXPECT_EQ(v.modality, "CT");
+    EXPECT_EQ(v.format, "DICOM series");
+}
+
+TEST_F(VolumeDicom, AnyFileStandsForItsSeries) {
+    put_all();
+    DicomFields other = dicom_slice(s, 0);
+    other.series = "9.9";
+    other.instance_uid = "9.9.1";
+    const std::string other_path = put("other.dcm", other);
+    EXPECT_TRUE(is_sample(read_volume(folder / "series/3.dcm")));
+    EXPECT_EQ(read_volume(other_path).dims[2], 1);
+}
+
+TEST_F(VolumeDicom, SeveralSeriesAreListedAndOneIsChosen) {
+    put_all();
+    for (int k = 0; k < 3; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.series = "7.7";
+        f.instance_uid = fmt::format("7.7.{}", k);
+        put(fmt::format("b{}.dcm", k), f);
+    }
+    EXPECT_TRUE(is_sample(read()));
+    EXPECT_THAT(read().notes, Contains(::testing::AllOf(HasSubstr("2 series"), HasSubstr("7.7"), HasSubstr("5 x 4 x 3"))));
+    options.series = "7.7";
+    EXPECT_EQ(read().dims[2], 3);
+    options.series = "8.8";
+    expect_error([&] { read(); }, {"no series 8.8", "1.2.3", "7.7"});
+}
+
+TEST_F(VolumeDicom, ScaleSignAndStoredBits) {
+    for (int k = 0; k < s.dims[2]; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.slope = "2", f.intercept = "-1024";
+        put(fmt::format("{}.dcm", k), f);
+    }
+    Voxels v = read();
+    EXPECT_TRUE(is_sample(v));
+    EXPECT_EQ(v.slope, 2);
+    EXPECT_EQ(v.intercept, -1024);
+    for (int k = 0; k < s.dims[2]; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.bits_stored = 12; // the upper bits are none of the value
+        put(fmt::format("{}.dcm", k), f);
+    }
+    v = read();
+    for (std::size_t i = 0; i < s.voxels.size(); ++i) ASSERT_EQ(v.data<std::int16_t>()[i], ((s.voxels[i] & 0xfff) ^ 0x800) - 0x800);
+    for (int k = 0; k < s.dims[2]; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.bits_stored = 12, f.is_signed = false;
+        put(fmt::format("{}.dcm", k), f);
+    }
+    v = read();
+    EXPECT_EQ(v.type, VoxelType::u16);
+    for (std::size_t i = 0; i < s.voxels.size(); ++i) ASSERT_EQ(v.data<std::uint16_t>()[i], s.voxels[i] & 0xfff);
+}
+
+TEST_F(VolumeDicom, SlicesScaledDifferentlyBecomePhysicalFloats) {
+    for (int k = 0; k < s.dims[2]; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.slope = std::to_string(k + 1);
+        put(fmt::format("{}.dcm", k), f);
+    }
+    const Voxels v = read();
+    EXPECT_EQ(v.type, VoxelType::f32);
+    EXPECT_EQ(v.slope, 1);
+    EXPECT_EQ(v.data<float>()[20], static_cast<float>(2 * s.voxels[20]));
+    EXPECT_THAT(v.notes, Contains(HasSubstr("scaled differently")));
+}
+
+TEST_F(VolumeDicom, DuplicatesAreReported) {
+    put_all();
+    put("copy.dcm", dicom_slice(s, 2));
+    DicomFields again = dicom_slice(s, 5);
+    again.instance_uid = "1.2.3.99", again.instance = 99;
+    put("again.dcm", again);
+    const Voxels v = read();
+    EXPECT_TRUE(is_sample(v));
+    EXPECT_THAT(v.notes, Contains(HasSubstr("1 duplicate file was")));
+    EXPECT_THAT(v.notes, Contains(HasSubstr("1 duplicate slice at the place of another")));
+}
+
+TEST_F(VolumeDicom, ManyTimesAtEveryPlaceAreFrames) {
+    put_all();
+    for (int k = 0; k < s.dims[2]; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.instance_uid = fmt::format("1.2.3.5.{}", k);
+        f.acquisition = 2;
+        std::fill(f.pixels.begin(), f.pixels.end(), static_cast<char>(k));
+        put(fmt::format("t{}.dcm", k), f);
+    }
+    EXPECT_TRUE(is_sample(read()));
+    EXPECT_THAT(read().notes, Contains(HasSubstr("2 times")));
+    options.frame = 1;
+    EXPECT_EQ(read().data<std::int16_t>()[20], 0x0101);
+    options.frame = 2;
+    expect_error([&] { read(); }, {"2 frames"});
+}
+
+TEST_F(VolumeDicom, GapsAreRefusedOrInterpolated) {
+    put_all();
+    std::filesystem::remove(folder / "series/3.dcm");
+    std::filesystem::remove(folder / "series/4.dcm");
+    expect_error([&] { read(); }, {"2 of 8 slices are missing", "6.00 mm", "--allow-gaps"});
+    options.allow_gaps = true;
+    const Voxels v = read();
+    ASSERT_EQ(v.dims, s.dims);
+    EXPECT_NEAR(v.geometry.spacing[2], 2, 1e-9);
+    EXPECT_THAT(v.notes, Contains(HasSubstr("2 of 8 slices are missing: interpolated")));
+    for (std::size_t i = 0; i < 20; ++i) {
+        const double low = s.voxels[40 + i], high = s.voxels[100 + i];
+        EXPECT_EQ(v.data<std::int16_t>()[40 + i], low);
+        EXPECT_EQ(v.data<std::int16_t>()[60 + i], std::round(low + (high - low) / 3));
+        EXPECT_EQ(v.data<std::int16_t>()[80 + i], std::round(low + (high - low) * 2 / 3));
+        EXPECT_EQ(v.data<std::int16_t>()[100 + i], high);
+    }
+}
+
+TEST_F(VolumeDicom, SlicesOutOfStepAreRefused) {
+    put_all();
+    DicomFields f = dicom_slice(s, 3);
+    const Double3 at = s.geometry.to_world({0, 0, 3.4});
+    f.position = fmt::format("{}\\{}\\{}", at[0], at[1], at[2]);
+    put("3.dcm", f);
+    expect_error([&] { read(); }, {"1 of 8 slices", "out of step"});
+    options.allow_gaps = true;
+    EXPECT_EQ(read().dims, s.dims);
+}
+
+TEST_F(VolumeDicom, ATiltedGantryKeepsAShearedVolume) {
+    s.geometry.direction.row = {{{1, 0, 0}, {0, 1, std::sin(0.3)}, {0, 0, std::cos(0.3)}}};
+    put_all();
+    const Voxels v = read();
+    EXPECT_TRUE(is_sample(v));
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(v.geometry.direction.row[i][2], s.geometry.direction.row[i][2], 1e-5);
+    EXPECT_NEAR(v.geometry.spacing[2], 2, 1e-5);
+    EXPECT_THAT(v.notes, Contains(HasSubstr("17.2 degrees")));
+}
+
+TEST_F(VolumeDicom, OtherSizesAndOrientationsAreLeftOut) {
+    put_all();
+    Sample scout({9, 9, 1});
+    scout.geometry.direction.row = {{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}};
+    DicomFields f = dicom_slice(scout, 0);
+    f.instance_uid = "1.2.3.77";
+    put("scout.dcm", f);
+    EXPECT_TRUE(is_sample(read()));
+    EXPECT_THAT(read().notes, Contains(HasSubstr("1 of 9 slices have another size or orientation")));
+}
+
+TEST_F(VolumeDicom, WhatIsNoSliceIsNotedAndAloneRefused) {
+    const auto alone = [&](const std::function<void(DicomFields&)>& change, const std::vector<std::string>& words) {
+        DicomFields f = dicom_slice(s, 0);
+        f.instance_uid = "1.2.3.55";
+        change(f);
+        const std::string bytes = dicom(f);
+        expect_error([&] { read_volume(write(folder / "alone/x.dcm", bytes)); }, words);
+        expect_error([&] { read_volume(folder / "alone"); }, words);
+        put_all();
+        write(folder / "series/x.dcm", bytes);
+        const Voxels v = read();
+        EXPECT_TRUE(is_sample(v));
+        EXPECT_THAT(v.notes, Contains(HasSubstr("1 DICOM file was left out")));
+    };
+    alone([](DicomFields& f) { f.photometric = "RGB", f.samples = 3; }, {"colours", "RGB"});
+    alone([](DicomFields& f) { f.photometric = "PALETTE COLOR"; }, {"PALETTE"});
+    alone([](DicomFields& f) { f.modality = "SEG"; }, {"label map"});
+    alone([](DicomFields& f) { f.frames = "12"; }, {"12 frames", "dcm2niix"});
+    alone([](DicomFields& f) { f.position.clear(); }, {"ImagePositionPatient"});
+    alone([](DicomFields& f) { f.orientation = "1\\0\\0\\1\\0\\0"; }, {"ImageOrientationPatient"});
+    alone([](DicomFields& f) { f.orientation = "1\\0\\0\\0\\nan\\0"; }, {"ImageOrientationPatient"});
+    alone([](DicomFields& f) { f.spacing = "0\\1"; }, {"PixelSpacing"});
+    alone([](DicomFields& f) { f.spacing = "nan\\1"; }, {"PixelSpacing"});
+    alone([](DicomFields& f) { f.bits_stored = 17; }, {"17 bits"});
+}
+
+TEST_F(VolumeDicom, ADamagedFileIsRefusedOrWithGapsLeftOut) {
+    put_all();
+    const std::string whole = test::read(folder / "series/3.dcm");
+    write(folder / "series/3.dcm", whole.substr(0, 300));
+    expect_error([&] { read(); }, {"3.dcm", "not sound as DICOM", "--allow-gaps"});
+    options.allow_gaps = true;
+    EXPECT_EQ(read().dims, s.dims);
+    write(folder / "series/3.dcm", whole.substr(0, whole.size() - 1));
+    expect_error([&] { read(); }, {"3.dcm", "expected 40 bytes of pixels, found 39"});
+}
+
+TEST_F(VolumeDicom, DamagedCompressedPixelsAreAnErrorNeverACrash) {
+    DicomFields f = dicom_slice(s, 0);
+    f.rle = true;
+    const std::string whole = dicom(f);
+    for (std::size_t i = whole.size() - rle_frame(f.pixels).size() - 8; i < whole.size(); ++i) {
+        std::string damaged = whole;
+        damaged[i] = static_cast<char>(~damaged[i]);
+        try {
+            read_volume(write(folder / "x.dcm", damaged));
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), ErrorKind::input);
+        }
+    }
+}
+
+} // namespace
+} // namespace clvr::test
