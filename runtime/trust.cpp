@@ -1,6 +1,6 @@
 #include "runtime/trust.hpp"
 
-#include "kernels/probe/trust_operations.h"
+#include "kernels/shared/trust_operations.h"
 #include "runtime/device.hpp"
 #include "runtime/folders.hpp"
 #include "runtime/program.hpp"

@@ -1,6 +1,6 @@
 // Evaluates every operation of trust_operations.h on n vectors of operands; result k of the list lies at results[k * n].
 #pragma OPENCL FP_CONTRACT OFF
-#include "trust_operations.h"
+#include "shared/trust_operations.h"
 
 #ifndef CLVR_WIDTH
 #define CLVR_WIDTH 1 // or 16; divides n

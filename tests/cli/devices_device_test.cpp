@@ -18,6 +18,13 @@ using testing::Not;
 
 constexpr const char* oclgrind = "/usr/lib/oclgrind/liboclgrind-rt-icd.so";
 
+/// Where PoCL keeps kernels for this user, so that programs with another home need not compile them again.
+std::string pocl_cache() {
+    const auto variable = [](const char* name) { return std::string(std::getenv(name) ? std::getenv(name) : ""); };
+    if (!variable("POCL_CACHE_DIR").empty()) return variable("POCL_CACHE_DIR");
+    return (variable("XDG_CACHE_HOME").empty() ? variable("HOME") + "/.cache" : variable("XDG_CACHE_HOME")) + "/pocl/kcache";
+}
+
 /// Runs programs with a home of their own.
 class Program : public testing::Test {
 protected:
@@ -27,7 +34,8 @@ protected:
         const Environment usual{{"HOME", home.path().string()},
                                 {"XDG_CACHE_HOME", std::nullopt},
                                 {"XDG_CONFIG_HOME", std::nullopt},
-                                {"CLVR_DEVICE", std::nullopt}};
+                                {"CLVR_DEVICE", std::nullopt},
+                                {"POCL_CACHE_DIR", pocl_cache()}};
         environment.insert(usual.begin(), usual.end());
         return {arguments, environment, home.path()};
     }
@@ -201,9 +209,9 @@ TEST_F(Simulator, TwoProcessesFillTheCacheAtOnce) {
 }
 
 TEST_F(Simulator, BuildLogsShowFileAndLineThoughLineDirectivesAreIgnored) {
-    home.write("kernels/probe/trust_operations.h", "// one\n// two\nint wrong = undeclared_name;\n");
+    home.write("kernels/shared/trust_operations.h", "// one\n// two\nint wrong = undeclared_name;\n");
     const Outcome outcome = run({"devices", "--device", "0", "--kernel-dir", (home.path() / "kernels").string()}, environment());
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("cannot be probed"), HasSubstr("probe/trust_operations.h:3:"), HasSubstr("undeclared_name")));
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("cannot be probed"), HasSubstr("shared/trust_operations.h:3:"), HasSubstr("undeclared_name")));
 }
 
 } // namespace

@@ -23,8 +23,8 @@ TEST(Size, IsReadAsPeopleWriteIt) {
 }
 
 TEST(Size, NonsenseIsAUsageErrorThatNamesTheOption) {
-    for (const char* text :
-         {"", "0", "-1", "0.0001", "12X", "1 2", "0x10", "nan", "inf", "1e9", "9999999999T", "99999999999999999999", "M", ".5G", "1.5.5", "1 2K", "64iB", "64KiBx", "K64"}) {
+    for (const char* text : {"", "0", "-1", "0.0001", "12X", "1 2", "0x10", "nan", "inf", "1e9", "9999999999T", "99999999999999999999", "M",
+                             ".5G", "1.5.5", "1 2K", "64iB", "64KiBx", "K64"}) {
         try {
             parse_size(text, "--memory");
             ADD_FAILURE() << text;

@@ -15,10 +15,10 @@ DeviceFacts chosen() { return select_devices().devices.at(0); }
 /// A kernel folder in which the device's list of operations has one expression replaced, so that the device computes what a faulty one
 /// would; the host keeps the right list, which is compiled in.
 void write_faulty_operations(const TemporaryFolder& folder, const std::string& right, const std::string& wrong) {
-    std::string list = read_kernel_file("probe/trust_operations.h").value();
+    std::string list = read_kernel_file("shared/trust_operations.h").value();
     const std::size_t at = list.find(right);
     ASSERT_NE(at, std::string::npos) << right;
-    folder.write("probe/trust_operations.h", list.replace(at, right.size(), wrong));
+    folder.write("shared/trust_operations.h", list.replace(at, right.size(), wrong));
 }
 
 TEST(Trust, ThisDevicePasses) {
