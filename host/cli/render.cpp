@@ -9,6 +9,7 @@
 #include "host/render/params.hpp"
 #include "host/render/renderer.hpp"
 #include "runtime/embedded.hpp"
+#include "runtime/folders.hpp"
 #include "runtime/select.hpp"
 #include "runtime/sha256.hpp"
 #include "runtime/size.hpp"
@@ -125,6 +126,8 @@ void render(const RenderOptions& o) {
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
     Scene scene = scene_of(o);
     for (const auto& path : o.outputs) check_frame_path(path);
+    if (!o.save_scene.empty() && !writable_folder(std::filesystem::absolute(o.save_scene).parent_path()))
+        throw Error(ErrorKind::input, "cannot be written: its folder is missing or not writable", o.save_scene);
     const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
 
     catch_interrupts();
@@ -146,23 +149,23 @@ void render(const RenderOptions& o) {
     if (!scene.transfer) scene.transfer = automatic_transfer_function(volume.voxels, stored_histogram(volume.voxels));
     scene.extinction = resolved_extinction(scene, volume.voxels);
 
+    Scene wanted = scene;
+    wanted.features &= any_exr; // a PNG alone does not need them
+    Renderer renderer(devices, volume, wanted, environment, o.turntable > 0);
+    for (const auto& w : renderer.warnings()) spdlog::warn("{}", w);
+
     const double azimuth = scene.camera.azimuth;
     int reached = 0;
-    for (int view = 0; view < std::max(1, o.turntable); ++view) {
+    for (int view = 0; view < std::max(1, o.turntable) && !interrupted; ++view) {
         std::vector<std::string> outputs = o.outputs;
         if (o.turntable > 0) {
             for (auto& path : outputs) path = numbered(path, view);
             scene.camera.azimuth = azimuth + 360.0 * view / o.turntable;
             scene.view = view;
+            renderer.aim(scene.camera, scene.view);
         }
-        Scene wanted = scene;
-        wanted.features &= any_exr; // a PNG alone does not need them
-        Renderer renderer(devices, volume, wanted, environment, o.turntable > 0);
-        if (view == 0)
-            for (const auto& w : renderer.warnings()) spdlog::warn("{}", w);
         reached = render_view(renderer, scene, o, devices, outputs,
                               o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
-        if (interrupted) break;
     }
     if (!o.save_scene.empty()) {
         scene.camera.azimuth = azimuth;

@@ -2,6 +2,8 @@
 #include "host/render/marcher.hpp"
 #include "host/render/params.hpp"
 #include "host/render/path_tracer.hpp"
+#include "runtime/host_memory.hpp"
+#include "runtime/size.hpp"
 
 #include <algorithm>
 #include <array>
@@ -57,34 +59,57 @@ std::vector<Double3> outline_of(const Classified& c, const Scene& scene) {
                            clip_box_index(scene, *c.voxels));
 }
 
+/// Throws Error{memory} when the picture's own buffers would not fit into what the host has left: the kernel would end the process instead.
+void refuse_what_host_memory_cannot_hold(const Scene& scene) {
+    const double pixels = static_cast<double>(scene.width) * scene.height;
+    const double wanted =
+        pixels * (64 + 4 * 4 + 3 * 4 + (scene.features ? 2 * 4 * march_planes(March::features) : 0)); // sums twice, channels, planes
+    const std::size_t left = available_memory();
+    if (wanted > static_cast<double>(left))
+        throw Error(ErrorKind::memory,
+                    "a picture of " + std::to_string(scene.width) + "x" + std::to_string(scene.height) + " pixels takes " +
+                        size_text(static_cast<std::size_t>(wanted)) + " of host memory, " + size_text(left) +
+                        " are left; try a smaller one",
+                    "--size");
+}
+
 } // namespace
 
 /// One device's share of the work.
 struct Renderer::Worker {
     Device device;
     DeviceVolume volume;
-    LightTables light;
+    std::optional<LightTables> light;
     std::optional<PathTracer> tracer;
-    Worker(const Device& d, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& v, const shared::RenderParams& r,
-           const EnvironmentTables& e)
-        : device(d), volume(device, c, layout, v), light(device, r, e) {}
+    Worker(const Device& d, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& v)
+        : device(d), volume(device, c, layout, v) {}
 };
 
 Renderer::Renderer(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment,
                    bool steady)
-    : scene_(scene) {
+    : scene_(scene), volume_(volume), environment_(environment), steady_(steady) {
     validate(scene);
+    refuse_what_host_memory_cannot_hold(scene);
     const Classified c = classify(volume, scene);
     if (std::none_of(c.majorants.begin(), c.majorants.end(), [](float m) { return m > 0; }))
         warnings_.push_back("nothing is visible: the transfer function gives every voxel the opacity 0; try another --tf, or `clvr info` "
                             "for the range of the values");
-    const View view = resolve_view(scene, outline_of(c, scene), steady);
-    const shared::RenderParams render = render_params(scene, volume.voxels, view, environment);
+    outline_ = outline_of(c, scene);
     numbers_ = (scene.width + 3u) / 4 * ((scene.height + 3u) / 4) * 16;
     for (Device& d : devices) {
         const BrickLayout layout = device_layout(d, c);
-        workers_.push_back(
-            std::make_unique<Worker>(d, c, layout, volume_params(scene, volume.voxels, volume.grid, c.table, layout), render, environment));
+        workers_.push_back(std::make_unique<Worker>(d, c, layout, volume_params(scene, volume.voxels, volume.grid, c.table, layout)));
+    }
+    aim(scene.camera, scene.view);
+}
+
+void Renderer::aim(const Camera& camera, int view) {
+    scene_.camera = camera;
+    scene_.view = view;
+    const shared::RenderParams params = render_params(scene_, volume_.voxels, resolve_view(scene_, outline_, steady_), environment_);
+    for (auto& w : workers_) {
+        w->tracer.reset();
+        w->light.emplace(w->device, params, environment_);
     }
 }
 
@@ -131,7 +156,7 @@ void Renderer::trace(Frame& frame, const RenderControl& control) {
     const auto begin = clock::now();
     const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
     for (auto& w : workers_)
-        if (!w->tracer) w->tracer.emplace(w->device, w->volume, w->light);
+        if (!w->tracer) w->tracer.emplace(w->device, w->volume, *w->light);
 
     PixelSums sums{std::vector<shared::float4>(numbers_), std::vector<shared::float4>(numbers_)}, finished = sums;
     int reached = 0;
@@ -194,7 +219,7 @@ void Renderer::march(Frame& frame, bool features, const RenderControl& control) 
 
     std::vector<float> planes(names.size() * numbers_);
     std::vector<std::unique_ptr<Marcher>> marchers;
-    for (auto& w : workers_) marchers.push_back(std::make_unique<Marcher>(w->device, w->volume, w->light, kind, scene_.feature_samples));
+    for (auto& w : workers_) marchers.push_back(std::make_unique<Marcher>(w->device, w->volume, *w->light, kind, scene_.feature_samples));
     deal(Marcher::pixels_per_launch, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
         if (cancelled) return;
         const auto index =
@@ -223,7 +248,7 @@ void Renderer::lay_background(Frame& frame) {
         deal(Marcher::pixels_per_launch, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
             Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
             Buffer out = w.device.buffer(count * sizeof(shared::float4), "background");
-            w.device.launch(kernel, {count}, {64}, {}, w.light.arguments(), first, count, out);
+            w.device.launch(kernel, {count}, {64}, {}, w.light->arguments(), first, count, out);
             w.device.read(out, &under[first], count * sizeof(shared::float4));
         });
     }

@@ -34,11 +34,15 @@ struct PreparedVolume {
 
 class Renderer {
 public:
-    /// Classifies the volume, frames the camera, uploads to every device. `environment` holds the tables of the scene's image (empty
-    /// without one). `steady` frames for a turntable (resolve_view). Adds to `warnings()` when nothing is visible. Throws Error.
+    /// Classifies the volume, frames the camera, uploads to every device. `volume` outlives the renderer. `environment` holds the tables of
+    /// the scene's image (empty without one). `steady` frames for a turntable (resolve_view). Adds to `warnings()` when nothing is visible.
+    /// Throws Error.
     Renderer(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {},
              bool steady = false);
     ~Renderer();
+
+    /// Turns to another camera and view number (part of the random key); volume and classification stay on the devices.
+    void aim(const Camera& camera, int view);
 
     /// Renders the scene. `frame.attributes` gets "clvr.spp" (samples reached). Throws Error{interrupted} when cancelled before one pass
     /// was done.
@@ -50,7 +54,11 @@ private:
     struct Worker;
     std::vector<std::unique_ptr<Worker>> workers_;
     Scene scene_;
-    std::uint32_t numbers_; // pixel numbers, in 4x4 blocks
+    const PreparedVolume& volume_;
+    EnvironmentTables environment_;
+    bool steady_;
+    std::vector<Double3> outline_; // of what is visible, world space
+    std::uint32_t numbers_;        // pixel numbers, in 4x4 blocks
     std::vector<std::string> warnings_;
 
     template <class F>
