@@ -9,7 +9,6 @@
 #include "host/render/params.hpp"
 #include "host/render/renderer.hpp"
 #include "runtime/embedded.hpp"
-#include "runtime/folders.hpp"
 #include "runtime/select.hpp"
 #include "runtime/sha256.hpp"
 #include "runtime/size.hpp"
@@ -38,7 +37,10 @@ void catch_interrupts() {
     sigaction(SIGTERM, &action, nullptr);
 }
 
-bool is_exr(const std::string& path) { return std::filesystem::path(path).extension() == ".exr"; }
+bool is_exr(const std::string& path) {
+    const std::string ending = std::filesystem::path(path).extension().string();
+    return ending == ".exr" || ending == ".EXR";
+}
 
 std::string numbered(const std::string& path, int frame) {
     const std::filesystem::path p(path);
@@ -126,8 +128,7 @@ void render(const RenderOptions& o) {
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
     Scene scene = scene_of(o);
     for (const auto& path : o.outputs) check_frame_path(path);
-    if (!o.save_scene.empty() && !writable_folder(std::filesystem::absolute(o.save_scene).parent_path()))
-        throw Error(ErrorKind::input, "cannot be written: its folder is missing or not writable", o.save_scene);
+    if (!o.save_scene.empty()) check_writable(o.save_scene);
     const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
 
     catch_interrupts();
