@@ -181,8 +181,10 @@ Kernel Device::kernel(const std::string& stage, const Defines& defines) {
         found = state_->programs.emplace(key, build_program(state_->context, state_->facts, stage + ".cl", defines)).first;
     Kernel kernel;
     kernel.label_ = stage.substr(stage.rfind('/') + 1);
-    kernel.handle_ =
-        cl_check(state_->doing("entry point " + kernel.label_), [&] { return cl::Kernel(found->second, kernel.label_.c_str()); });
+    cl_check(state_->doing("entry point " + kernel.label_), [&] {
+        kernel.handle_ = cl::Kernel(found->second, kernel.label_.c_str());
+        kernel.max_local_items_ = kernel.handle_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->facts.handle);
+    });
     return kernel;
 }
 
@@ -190,20 +192,15 @@ void Device::set_arg_bytes(Kernel& k, cl_uint i, std::size_t bytes, const void* 
     cl_check(fmt::format("argument {} ({} bytes) of kernel {}", i, bytes, k.label_), [&] { k.handle_.setArg(i, bytes, value); });
 }
 
-std::size_t Device::max_local_items(const Kernel& k) const {
-    return cl_check(state_->doing(k.label_), [&] { return k.handle_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->facts.handle); });
-}
-
 void Device::enqueue(Kernel& k, Range global, Range local, Work work) {
     const std::size_t group = local.x * local.y * local.z;
     if (group == 0) throw Error(ErrorKind::internal, "a local size of 0", k.label_);
     if (global.x == 0 || global.y == 0 || global.z == 0) return;
-    const std::size_t limit = max_local_items(k);
     const std::size_t* items = state_->facts.max_work_item;
-    if (group > limit || local.x > items[0] || local.y > items[1] || local.z > items[2])
+    if (group > k.max_local_items_ || local.x > items[0] || local.y > items[1] || local.z > items[2])
         throw Error(ErrorKind::device,
-                    fmt::format("a local size of {}x{}x{} is above the limit of {} (at most {}x{}x{})", local.x, local.y, local.z, limit,
-                                items[0], items[1], items[2]),
+                    fmt::format("a local size of {}x{}x{} is above the limit of {} (at most {}x{}x{})", local.x, local.y, local.z,
+                                k.max_local_items_, items[0], items[1], items[2]),
                     state_->doing(k.label_));
     const cl::NDRange rounded(rounded_up(global.x, local.x), rounded_up(global.y, local.y), rounded_up(global.z, local.z));
     cl::Event event;

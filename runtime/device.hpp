@@ -64,11 +64,15 @@ class Kernel {
 public:
     Kernel() = default;
     const std::string& label() const { return label_; }
+    /// Most work-items in a group of this kernel on its device: at most the device's own limit, less where registers or private memory are
+    /// short.
+    std::size_t max_local_items() const { return max_local_items_; }
 
 private:
     friend class Device;
     cl::Kernel handle_;
     std::string label_;
+    std::size_t max_local_items_ = 0;
 };
 
 /// A device in use. Cheap to copy (a shared handle); one host thread at a time drives one Device.
@@ -121,9 +125,6 @@ public:
     /// Built on first use with `defines` (and the device's own ones), then kept in process and on disk.
     /// A build failure throws Error{device} whose text holds the compiler's log with file and line.
     Kernel kernel(const std::string& stage, const Defines& defines = {});
-
-    /// Most work-items in a group of this kernel on this device (also below the device's own limit: registers, private memory).
-    std::size_t max_local_items(const Kernel& k) const;
 
     /// Enqueues a kernel over `global` (rounded up to `local`); arguments are Buffer, BufferList (an argument each), LocalMemory or
     /// trivially copyable values, in order.

@@ -22,6 +22,12 @@ std::string trimmed(std::string text) {
     return text;
 }
 
+/// "OpenCL <major>.<minor> ..." of at least 1.2.
+bool offers_1_2(const std::string& version) {
+    int major = 0, minor = 0;
+    return std::sscanf(version.c_str(), "OpenCL %d.%d", &major, &minor) == 2 && major * 10 + minor >= 12;
+}
+
 /// The facts that the device itself tells.
 DeviceFacts facts_of(const cl::Device& device, const std::string& platform, const std::string& platform_version) {
     DeviceFacts f;
@@ -57,23 +63,31 @@ DeviceFacts facts_of(const cl::Device& device, const std::string& platform, cons
     f.claims_fma = config & CL_FP_FMA;
     f.claims_correct_divide_sqrt = config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
     f.claims_denormals = config & CL_FP_DENORM;
-    const auto partitions = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
-    const bool equally = std::find(partitions.begin(), partitions.end(), CL_DEVICE_PARTITION_EQUALLY) != partitions.end();
-    f.max_sub_devices = equally ? std::min(device.getInfo<CL_DEVICE_PARTITION_MAX_SUB_DEVICES>(), f.compute_units) : 0;
+    if (offers_1_2(f.version)) { // older devices do not know the question
+        const auto partitions = device.getInfo<CL_DEVICE_PARTITION_PROPERTIES>();
+        const bool equally = std::find(partitions.begin(), partitions.end(), CL_DEVICE_PARTITION_EQUALLY) != partitions.end();
+        f.max_sub_devices = equally ? std::min(device.getInfo<CL_DEVICE_PARTITION_MAX_SUB_DEVICES>(), f.compute_units) : 0;
+    }
     return f;
 }
 
 PlatformFacts facts_of(const cl::Platform& handle) {
     PlatformFacts platform;
+    std::vector<cl::Device> devices;
     try {
         platform.name = trimmed(handle.getInfo<CL_PLATFORM_NAME>());
         platform.vendor = trimmed(handle.getInfo<CL_PLATFORM_VENDOR>());
         platform.version = trimmed(handle.getInfo<CL_PLATFORM_VERSION>());
-        std::vector<cl::Device> devices;
         handle.getDevices(CL_DEVICE_TYPE_ALL, &devices);
-        for (const cl::Device& device : devices) platform.devices.push_back(facts_of(device, platform.name, platform.version));
     } catch (const cl::Error& error) {
         spdlog::warn("OpenCL platform \"{}\" is broken: {}", platform.name, translated(error, {}).line());
+    }
+    for (const cl::Device& device : devices) {
+        try {
+            platform.devices.push_back(facts_of(device, platform.name, platform.version));
+        } catch (const cl::Error& error) {
+            spdlog::warn("a device of OpenCL platform \"{}\" is broken: {}", platform.name, translated(error, {}).line());
+        }
     }
     return platform;
 }
@@ -81,11 +95,9 @@ PlatformFacts facts_of(const cl::Platform& handle) {
 } // namespace
 
 std::string why_unusable(const DeviceFacts& device) {
-    int major = 0, minor = 0;
     if (!device.available) return "is not available now";
     if (!device.has_compiler) return "has no OpenCL compiler";
-    if (std::sscanf(device.version.c_str(), "OpenCL %d.%d", &major, &minor) != 2 || major * 10 + minor < 12)
-        return fmt::format("offers \"{}\", clvr needs OpenCL 1.2", device.version);
+    if (!offers_1_2(device.version)) return fmt::format("offers \"{}\", clvr needs OpenCL 1.2", device.version);
     return {};
 }
 

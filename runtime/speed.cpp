@@ -35,7 +35,7 @@ double probe_speed_ms(const DeviceFacts& facts) {
     double best_ms = std::numeric_limits<double>::infinity();
     for (const cl_uint width : {1u, 16u}) {
         Kernel kernel = device.kernel("probe/speed", {{"CLVR_WIDTH", std::to_string(width)}});
-        const Range local{std::min<std::size_t>(64, device.max_local_items(kernel))};
+        const Range local{std::min<std::size_t>(64, kernel.max_local_items())};
         for (int i = 0; i < repetitions; ++i) {
             device.finish();
             const auto start = std::chrono::steady_clock::now(); // rusticl 22.3 says 1 ns in its profiling events
