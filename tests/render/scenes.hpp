@@ -1,5 +1,7 @@
 // Small volumes, scenes and statistics that the tests of the renderer share.
 #pragma once
+#include "host/render/device_volume.hpp"
+#include "host/render/params.hpp"
 #include "host/render/renderer.hpp"
 #include "runtime/select.hpp"
 
@@ -75,6 +77,31 @@ inline Frame render(const Voxels& v, const Scene& scene, const EnvironmentTables
     const PreparedVolume prepared(v);
     return Renderer({open_device()}, prepared, scene, environment).render();
 }
+
+/// The pieces that a Renderer puts together, within reach of a test. The scene names eye, target and transfer function.
+struct Stage {
+    PreparedVolume volume;
+    Scene scene;
+    EnvironmentTables environment;
+    Classified classified;
+    shared::RenderParams render;
+
+    Stage(Voxels v, Scene s, EnvironmentTables e = {}) : volume(std::move(v)), scene(std::move(s)), environment(std::move(e)) {
+        const auto [low, high] = std::minmax_element(volume.grid.range.begin(), volume.grid.range.end());
+        classified.voxels = &volume.voxels;
+        classified.grid = &volume.grid;
+        classified.table = tabulate(scene.transfer.value(), volume.voxels, *low, *high);
+        classified.majorants = majorants(volume.grid, classified.table);
+        render = render_params(scene, volume.voxels, resolve_view(scene, {{0, 0, 0}}, false), environment);
+    }
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+
+    DeviceVolume upload(Device& device, const BrickLayout& layout) const {
+        return {device, classified, layout, volume_params(scene, volume.voxels, volume.grid, classified.table, layout)};
+    }
+    DeviceVolume upload(Device& device) const { return upload(device, device_layout(device, classified)); }
+};
 
 struct Mean {
     double value = 0, sigma = 0; ///< of the channel over the picture, and its standard error
