@@ -16,17 +16,17 @@ namespace {
 
 using Rgb = std::array<double, 3>;
 
-/// Khronos "PBR Neutral" shape: colours below `knee` stay as they are, so that albedos look as the transfer function names them; above it
-/// the greatest component rolls off towards 1 and 1 itself becomes (1 + knee) / 2. Hue is kept; far highlights lose saturation on their way
-/// to white.
+/// The shape of the Khronos "PBR Neutral" curve behind a gain: colours up to `knee` are only scaled, so that albedos keep the look that the
+/// transfer function gives them; above, the greatest component rolls off towards 1. Hue is kept; far highlights lose saturation on their
+/// way to white. The gain makes up for light lost between scatterings; a white Lambert surface that faces the key (radiance 1) becomes 0.9.
 Rgb filmic(const Rgb& c) {
-    constexpr double knee = 0.76, desaturation = 0.15;
-    const double peak = std::max({c[0], c[1], c[2]});
-    if (peak <= knee) return c;
+    constexpr double gain = 1.3, knee = 0.7, desaturation = 0.15;
+    const double peak = gain * std::max({c[0], c[1], c[2]});
+    if (peak <= knee) return {gain * c[0], gain * c[1], gain * c[2]};
     const double rolled = 1 - (1 - knee) * (1 - knee) / (peak + 1 - 2 * knee);
     const double white = 1 - 1 / (desaturation * (peak - rolled) + 1);
     Rgb out;
-    for (int i = 0; i < 3; ++i) out[i] = c[i] * (rolled / peak) * (1 - white) + rolled * white;
+    for (int i = 0; i < 3; ++i) out[i] = gain * c[i] * (rolled / peak) * (1 - white) + rolled * white;
     return out;
 }
 

@@ -28,28 +28,55 @@ T at(const Stops<T>& stops, double t) {
     return lerp(a, b, std::clamp((t - t0) / (t1 - t0), 0.0, 1.0));
 }
 
-// Tissue, bark, bone: reddish where it is thin or light, ivory where it is dense.
-const Stops<Color> surface_colors{
-    {0, {0.74, 0.28, 0.17}}, {0.3, {0.85, 0.53, 0.36}}, {0.6, {0.93, 0.80, 0.63}}, {0.85, {0.97, 0.93, 0.85}}, {1, {0.99, 0.98, 0.96}}};
+// Albedos are lighter and paler than the colours that they give: light that scatters several times takes them up several times.
+// Skin, bark, pottery: reddish where it is thin or light, ivory where it is dense.
+const Stops<Color> solid_colors{
+    {0, {0.95, 0.74, 0.61}}, {0.25, {0.95, 0.77, 0.63}}, {0.5, {0.96, 0.86, 0.74}}, {0.8, {0.98, 0.95, 0.90}}, {1, {0.99, 0.98, 0.96}}};
 // Fields that fade out: a cool haze around a glowing core.
 const Stops<Color> field_colors{
-    {0, {0.22, 0.42, 0.72}}, {0.3, {0.30, 0.68, 0.74}}, {0.55, {0.97, 0.80, 0.38}}, {0.8, {0.95, 0.45, 0.20}}, {1, {0.98, 0.90, 0.75}}};
+    {0, {0.48, 0.70, 0.93}}, {0.3, {0.50, 0.83, 0.84}}, {0.55, {0.99, 0.82, 0.44}}, {0.8, {0.97, 0.54, 0.30}}, {1, {0.99, 0.90, 0.74}}};
 // The other side of a field with signs.
-const Stops<Color> below_colors{{0, {0.35, 0.45, 0.75}}, {0.5, {0.35, 0.60, 0.88}}, {1, {0.85, 0.93, 0.99}}};
+const Stops<Color> below_colors{{0, {0.62, 0.70, 0.95}}, {0.5, {0.60, 0.80, 0.97}}, {1, {0.92, 0.96, 0.99}}};
 
 const Stops<double> field_opacity{{0, 0}, {0.1, 0.02}, {0.3, 0.1}, {0.6, 0.4}, {1, 0.9}};
 
-/// Points from the threshold of one side outward, over stored values. Colours follow half the value and half its rank, so that each hue
-/// gets its share.
-std::vector<Point> outward(const ValueSide& side, const Stops<Color>& colors) {
-    constexpr int steps = 32;
-    const double solid = std::clamp((side.solid - side.threshold) / (side.top - side.threshold), 1.0 / steps, 0.9);
-    const Stops<double> surface_opacity{{0, 0}, {0.5 * solid, 0.06}, {solid, 0.5}, {1, 0.95}};
+/// What lies outside is solid and hides the rest.
+Stops<double> solid_opacity(double solid) {
+    return {{0, 0}, {0.4 * solid, 0.06}, {solid, 0.3}, {lerp(solid, 1, 0.35), 0.65}, {lerp(solid, 1, 0.75), 1}, {1, 1}};
+}
+
+/// A thin skin around clear flesh, around solid bone.
+Stops<double> wrapped_opacity(double solid, double common, double dense) {
+    const double clear = lerp(common, dense, 0.35);
+    return {{0, 0},         {0.5 * solid, 0.05}, {lerp(solid, common, 0.5), 0.05}, {lerp(solid, common, 0.9), 0.02},
+            {clear, 0.025}, {dense, 0.3},        {lerp(dense, 1, 0.35), 0.9},      {1, 1}};
+}
+
+Stops<Color> wrapped_colors(double common, double dense) {
+    return {{0, {0.95, 0.72, 0.60}},
+            {common, {0.94, 0.66, 0.56}},
+            {lerp(common, dense, 0.4), {0.95, 0.72, 0.60}},
+            {dense, {0.98, 0.93, 0.85}},
+            {1, {0.99, 0.97, 0.93}}};
+}
+
+/// Points from the threshold of one side outward, over stored values.
+std::vector<Point> outward(const Voxels& v, const ValueSide& side, const Stops<Color>& fading_colors) {
+    const auto share = [&](double value) { return std::clamp((value - side.threshold) / (side.top - side.threshold), 0.01, 0.99); };
+    const double solid = share(side.solid), common = share(side.common), dense = share(side.dense);
+    const bool wrapped = side.surfaces && side.dense_share > 0.01 && side.dense_share < 0.4 && dense_outside(v, side) < 0.2;
+    const Stops<double> opacity = wrapped ? wrapped_opacity(solid, common, dense) : side.surfaces ? solid_opacity(solid) : field_opacity;
+    const Stops<Color> colors = wrapped ? wrapped_colors(common, dense) : side.surfaces ? solid_colors : fading_colors;
+    std::vector<double> places; // of the opacities, and as many for the colours
+    for (const auto& stop : opacity) places.push_back(stop.first);
+    for (int k = 1; k < 16; ++k) places.push_back(k / 16.0);
+    std::sort(places.begin(), places.end());
     std::vector<Point> points;
-    for (int k = 0; k <= steps; ++k) {
-        const double t = k / double(steps), rank = side.rank[std::size_t(k) * 64 / steps];
-        Point p{lerp(side.threshold, side.top, t), at(colors, 0.5 * t + 0.5 * rank),
-                at(side.surfaces ? surface_opacity : field_opacity, t)};
+    for (double t : places) {
+        // Where nothing tells materials apart, colours follow half the value and half its rank, so that each hue gets its share.
+        const std::size_t k = std::min(static_cast<std::size_t>(64 * t), std::size_t{63});
+        const double rank = lerp(side.rank[k], side.rank[k + 1], 64 * t - static_cast<double>(k));
+        Point p{lerp(side.threshold, side.top, t), at(colors, wrapped ? t : 0.5 * t + 0.5 * rank), at(opacity, t)};
         for (double& c : p.color) c = srgb_decode(c);
         points.push_back(p);
     }
@@ -63,11 +90,11 @@ TransferFunction automatic_transfer_function(const Voxels& v, const Histogram& h
     tf.name = "auto";
     const ValueShape shape = value_shape(value_counts(v, h.low, h.high));
     if (shape.below.active) {
-        tf.points = outward(shape.below, shape.above.active ? below_colors : shape.below.surfaces ? surface_colors : field_colors);
+        tf.points = outward(v, shape.below, shape.above.active ? below_colors : field_colors);
         std::reverse(tf.points.begin(), tf.points.end());
     }
     if (shape.above.active) {
-        const std::vector<Point> above = outward(shape.above, shape.above.surfaces ? surface_colors : field_colors);
+        const std::vector<Point> above = outward(v, shape.above, field_colors);
         tf.points.insert(tf.points.end(), above.begin(), above.end());
     }
     if (tf.points.empty()) tf.points = {{shape.low, {0.5, 0.5, 0.5}, 0.5}}; // one value everywhere

@@ -159,9 +159,15 @@ ValueSide side(const ValueCounts& counts, std::size_t background, std::size_t en
     const bool mode_apart = peak > occupied && beyond_valley > 0.5 * structure;
     s.active = structure > 0;
     s.surfaces = gap >= 4 || mode_apart;
-    const double first = gap >= 4 ? threshold + 0.5 * gap : threshold;
+    const double first = gap >= 4 ? threshold + 0.5 * gap : mode_apart ? 0.5 * (threshold + valley) : threshold;
     s.threshold = at(first);
     s.solid = at(std::max(first + 2, first + 0.4 * ((mode_apart ? peak : occupied) - first)));
+    s.common = at((mode_apart ? peak : occupied) + 0.5);
+    Coarse beyond{};
+    std::copy(all.begin() + threshold, all.end(), beyond.begin() + threshold);
+    const int dense = otsu(beyond);
+    s.dense = at(std::max(dense, peak + 1));
+    s.dense_share = std::accumulate(all.begin() + dense, all.end(), 0.0) / std::max(structure, 1.0);
 
     s.rank.assign(65, 0);
     std::vector<double> fine(65, 0);
@@ -200,6 +206,37 @@ ValueShape value_shape(const ValueCounts& counts) {
     shape.above.active = shape.above.active && shape.high - shape.background >= 0.2 * range;
     shape.below.active = shape.below.active && shape.background - shape.low >= 0.2 * range;
     return shape;
+}
+
+double dense_outside(const Voxels& v, const ValueSide& side) {
+    return with_voxel_type(v.type, [&](auto t) {
+        using T = decltype(t);
+        constexpr int reach = 3, rays = 128;
+        const T* values = v.data<T>();
+        const std::ptrdiff_t n[3] = {v.dims[0], v.dims[1], v.dims[2]}, stride[3] = {1, n[0], n[0] * n[1]};
+        const auto beyond = [&](T value, double limit) { return side.sign > 0 ? value > limit : value < limit; };
+        std::size_t met = 0, dense = 0;
+        const auto walk = [&](std::ptrdiff_t start, std::ptrdiff_t step, std::ptrdiff_t length) {
+            std::ptrdiff_t i = 0;
+            while (i < length && !beyond(values[start + i * step], side.solid)) ++i;
+            if (i == length) return;
+            ++met;
+            bool found = false;
+            for (std::ptrdiff_t k = i; k < std::min(i + reach + 1, length); ++k)
+                found = found || beyond(values[start + k * step], side.dense);
+            dense += found;
+        };
+        for (int axis = 0; axis < 3; ++axis) {
+            const int u = (axis + 1) % 3, w = (axis + 2) % 3;
+            for (std::ptrdiff_t a = 0; a < n[u]; a += (n[u] + rays - 1) / rays)
+                for (std::ptrdiff_t b = 0; b < n[w]; b += (n[w] + rays - 1) / rays) {
+                    const std::ptrdiff_t start = a * stride[u] + b * stride[w];
+                    walk(start, stride[axis], n[axis]);
+                    walk(start + (n[axis] - 1) * stride[axis], -stride[axis], n[axis]);
+                }
+        }
+        return met ? static_cast<double>(dense) / static_cast<double>(met) : 0.0;
+    });
 }
 
 } // namespace clvr

@@ -25,7 +25,10 @@ struct ValueSide {
     bool surfaces =
         false; ///< background and structure are apart: a gap or a valley in the counts. Otherwise the values fade out like a field
     double threshold = 0;     ///< what lies nearer to the background is background
-    double solid = 0;         ///< half way to the first structure: where a surface is seen (surfaces only)
+    double solid = 0;         ///< on the way to the most frequent structure: where a surface is seen (surfaces only)
+    double common = 0;        ///< the first structure that is frequent: flesh, bark (surfaces only)
+    double dense = 0;         ///< where denser structure begins: bone
+    double dense_share = 0;   ///< of the voxels beyond threshold
     double top = 0;           ///< robust end of the values
     std::vector<double> rank; ///< [65] share of this side's structure between threshold and threshold + k / 64 of the way to top
 };
@@ -37,5 +40,10 @@ struct ValueShape {
     ValueSide above, below;
 };
 ValueShape value_shape(const ValueCounts& counts);
+
+/// How much of the outside is dense: of the axis-parallel rays from all six faces (at most 128 x 128 a face) that meet a voxel beyond
+/// `side.solid`, the share that meets one beyond `side.dense` within the three voxels after it. Small where dense structure is wrapped in
+/// other structure.
+double dense_outside(const Voxels& v, const ValueSide& side);
 
 } // namespace clvr
