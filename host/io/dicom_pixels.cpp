@@ -135,7 +135,7 @@ void DicomPixelReader::start_child() {
 }
 
 void DicomPixelReader::read_child(const DicomSlice& s, unsigned char* to) {
-    constexpr int patience_ms = 60000;
+    constexpr int patience_ms = 20000;
     for (std::size_t done = 0; done < s.pixels.bytes();) {
         pollfd ready{pipe_, POLLIN, 0};
         const int events = poll(&ready, 1, patience_ms);
@@ -145,7 +145,7 @@ void DicomPixelReader::read_child(const DicomSlice& s, unsigned char* to) {
             bad_file(
                 s.path,
                 "GDCM {} its compressed pixels (transfer syntax {}): the file is damaged, or compressed in a way that GDCM does not know",
-                events == 0 ? "needs more than a minute for" : "cannot decode", s.file.transfer_syntax);
+                events == 0 ? "needs more than 20 seconds for" : "cannot decode", s.file.transfer_syntax);
         done += static_cast<std::size_t>(n);
     }
 }

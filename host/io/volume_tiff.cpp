@@ -232,10 +232,13 @@ Voxels read_tiff(const std::string& path, const std::vector<std::string>& files,
     std::vector<toff_t> pages = slices_of(head, page);
     const bool folder = files.size() > 1;
 
+    std::vector<std::string> notes;
     std::int64_t frames = 1;
     if (!folder) {
-        if (number_of(imagej, "channels", 1) > 1)
-            bad_file(path, "the stack has {} channels: clvr renders scalar volumes, split the channels in ImageJ", imagej.at("channels"));
+        const double channels = number_of(imagej, "channels", 1), planes = number_of(imagej, "slices", 1) * number_of(imagej, "frames", 1);
+        if (channels > 1 && planes > 1)
+            bad_file(path, "the stack has {:g} channels: clvr renders scalar volumes, split the channels in ImageJ", channels);
+        if (channels > 1) notes.push_back("the file calls its pages channels: taken as slices"); // as writers other than ImageJ do
         if (number_of(imagej, "images", 1) > static_cast<double>(pages.size()) && pages.size() == 1)
             bad_file(path, "ImageJ says {} slices but the file has one page (its form for stacks above 4 GB): save it as BigTIFF",
                      imagej.at("images"));
@@ -249,6 +252,7 @@ Voxels read_tiff(const std::string& path, const std::vector<std::string>& files,
 
     Voxels v;
     describe(v, path, folder ? "TIFF slices" : "TIFF", page.type);
+    v.notes.insert(v.notes.end(), notes.begin(), notes.end());
     v.dims = check_dims({page.width, page.height, static_cast<std::int64_t>(slices)}, 1, page.type, path).dims;
     v.geometry.spacing = options.spacing ? *options.spacing : calibration.value_or(Double3{1, 1, 1});
     check_geometry(v.geometry, path);
