@@ -4,6 +4,7 @@
 #include "host/render/params.hpp"
 #include "host/render/renderer.hpp"
 #include "runtime/select.hpp"
+#include "tests/runtime/scoped.hpp"
 
 #include <gtest/gtest.h>
 
