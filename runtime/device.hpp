@@ -122,7 +122,7 @@ public:
     }
 
     /// The entry point of "kernels/<stage>.cl": stage "render/shade" is file render/shade.cl, entry point shade, label "shade".
-    /// Built on first use with `defines` (and the device's own ones), then kept in process and on disk.
+    /// Built on first use with `defines`, then kept in process and on disk (there by the driver where it does so).
     /// A build failure throws Error{device} whose text holds the compiler's log with file and line.
     Kernel kernel(const std::string& stage, const Defines& defines = {});
 
