@@ -83,12 +83,46 @@ std::vector<Point> outward(const Voxels& v, const ValueSide& side, const Stops<C
     return points;
 }
 
+/// Share of the voxels whose physical value lies in low..high.
+double share_between(const Voxels& v, const ValueCounts& counts, double low, double high) {
+    double inside = 0;
+    for (std::size_t i = 0; i < counts.bins(); ++i) {
+        const double value = v.slope * counts.value(double(i)) + v.intercept;
+        if (value >= low && value <= high) inside += static_cast<double>(counts.all[i]);
+    }
+    return inside / static_cast<double>(v.count());
+}
+
+/// Whether the values are Hounsfield units of a body: air and fat, water, muscle are there with a valley between, and something dense.
+bool hounsfield_units(const Voxels& v, const ValueCounts& counts) {
+    if (!v.modality.empty() && v.modality != "CT") return false;
+    const double body = share_between(v, counts, -200, 200), valley = share_between(v, counts, -700, -300);
+    return body > 0.02 && valley < body && share_between(v, counts, -1e9, -850) > 0.02 && share_between(v, counts, 250, 1e9) > 0;
+}
+
+/// CT: a thin skin around clear flesh, contrast agent in red, bone in ivory.
+TransferFunction body_transfer_function() {
+    const Color skin{0.95, 0.74, 0.62}, flesh{0.94, 0.66, 0.56}, vessel{0.95, 0.60, 0.51}, bone{0.98, 0.93, 0.85}, enamel{0.99, 0.97, 0.93};
+    TransferFunction tf;
+    tf.points = {{-600, skin, 0},     {-450, skin, 0.03},  {-200, skin, 0.03}, {-120, flesh, 0.01}, {100, flesh, 0.015},
+                 {160, vessel, 0.05}, {220, vessel, 0.15}, {330, bone, 0.5},   {550, bone, 0.9},    {1600, enamel, 1}};
+    for (Point& p : tf.points)
+        for (double& c : p.color) c = srgb_decode(c);
+    return tf;
+}
+
 } // namespace
 
 TransferFunction automatic_transfer_function(const Voxels& v, const Histogram& h) {
+    const ValueCounts counts = value_counts(v, h.low, h.high);
     TransferFunction tf;
+    if (hounsfield_units(v, counts)) {
+        tf = body_transfer_function();
+        tf.name = "auto";
+        return tf;
+    }
     tf.name = "auto";
-    const ValueShape shape = value_shape(value_counts(v, h.low, h.high));
+    const ValueShape shape = value_shape(counts);
     if (shape.below.active) {
         tf.points = outward(v, shape.below, shape.above.active ? below_colors : field_colors);
         std::reverse(tf.points.begin(), tf.points.end());
