@@ -25,6 +25,22 @@ Error error_of(Call&& call) {
     return Error(ErrorKind::internal, "");
 }
 
+/// A kernel for the tests: to[i] = first + i for i below n.
+class Launches : public testing::Test {
+protected:
+    Launches() {
+        folder_.write("t/iota.cl", "kernel void iota(global int* to, int first, uint n) {\n"
+                                   "    const uint i = get_global_id(0);\n"
+                                   "    if (i < n) to[i] = first + (int)i;\n"
+                                   "}\n");
+        set_kernel_dir(folder_.path().string());
+    }
+    ~Launches() override { set_kernel_dir({}); }
+
+private:
+    TemporaryFolder folder_;
+};
+
 TEST(Facts, AreWorthBelieving) {
     const DeviceFacts facts = chosen();
     EXPECT_FALSE(facts.name.empty());
@@ -138,11 +154,11 @@ TEST(Device, Tunables) {
     }
 }
 
-TEST(Device, LaunchIsRoundedUpToTheLocalSize) {
+TEST_F(Launches, AreRoundedUpToTheLocalSize) {
     Device device = Device::open(chosen());
     Buffer numbers = device.buffer(1001 * sizeof(int), "numbers");
     device.fill(numbers, 0);
-    Kernel iota = device.kernel("probe/iota");
+    Kernel iota = device.kernel("t/iota");
     device.launch(iota, {1000}, {16}, {4000, 0}, numbers, 7, cl_uint{1000});
     std::vector<int> expected(1001, 0);
     std::iota(expected.begin(), expected.end() - 1, 7);
@@ -152,10 +168,10 @@ TEST(Device, LaunchIsRoundedUpToTheLocalSize) {
     EXPECT_EQ(device.profile().rows().at(1).bytes, 4000);
 }
 
-TEST(Device, LaunchesThatCannotBe) {
+TEST_F(Launches, ThatCannotBeAreRefused) {
     Device device = Device::open(chosen());
     Buffer numbers = device.buffer(16, "numbers");
-    Kernel iota = device.kernel("probe/iota");
+    Kernel iota = device.kernel("t/iota");
     EXPECT_EQ(error_of([&] { device.launch(iota, {16}, {0}, {}, numbers, 0, cl_uint{4}); }).kind(), ErrorKind::internal);
     const std::size_t above = 2 * device.facts().max_work_group;
     EXPECT_EQ(error_of([&] { device.launch(iota, {above}, {above}, {}, numbers, 0, cl_uint{4}); }).kind(), ErrorKind::device);
@@ -169,10 +185,10 @@ TEST(Device, LaunchesThatCannotBe) {
     EXPECT_TRUE(device.profile().rows().empty());
 }
 
-TEST(Device, EveryLaunchIsTimedOnce) {
+TEST_F(Launches, AreEachTimedOnce) {
     Device device = Device::open(chosen());
     Buffer numbers = device.buffer(4, "numbers");
-    Kernel iota = device.kernel("probe/iota");
+    Kernel iota = device.kernel("t/iota");
     for (int i = 0; i < 3000; ++i) device.launch(iota, {1}, {1}, {0, 2}, numbers, i, cl_uint{1});
     EXPECT_GE(device.profile().rows().at(0).launches, 1000u) << "events are not kept to the end";
     device.finish();
@@ -223,7 +239,7 @@ TEST(Device, MissingEntryPointIsNamed) {
                 testing::AllOf(testing::HasSubstr("entry point one"), testing::HasSubstr("CL_INVALID_KERNEL_NAME")));
 }
 
-TEST(SubDevices, ShareAContextAndAnAccountAndWorkAtOnce) {
+TEST_F(Launches, OnSubDevicesShareAContextAndAnAccount) {
     const DeviceFacts root = chosen();
     if (root.max_sub_devices < 2) GTEST_SKIP() << root.name << " cannot be divided";
     const Selection selection = select_devices(std::to_string(root.index) + "/2");
@@ -240,7 +256,7 @@ TEST(SubDevices, ShareAContextAndAnAccountAndWorkAtOnce) {
         threads.emplace_back([&, i] {
             Device& device = devices[i];
             Buffer numbers = device.buffer(4000, "numbers");
-            Kernel iota = device.kernel("probe/iota");
+            Kernel iota = device.kernel("t/iota");
             for (int k = 0; k < 100; ++k) device.launch(iota, {1000}, {8}, {}, numbers, k + static_cast<int>(i), cl_uint{1000});
             results[i] = device.download<int>(numbers, 1000);
         });
@@ -253,7 +269,7 @@ TEST(SubDevices, ShareAContextAndAnAccountAndWorkAtOnce) {
     EXPECT_EQ(second.used_bytes(), 100u);
 }
 
-TEST(SubDevices, NotMoreThanThereAre) {
+TEST(Facts, NoMoreSubDevicesThanComputeUnits) {
     const DeviceFacts root = chosen();
     EXPECT_EQ(error_of([&] { divide(root, static_cast<int>(root.compute_units) + 1); }).kind(), ErrorKind::device);
 }
