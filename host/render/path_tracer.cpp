@@ -11,13 +11,21 @@ namespace {
 constexpr std::uint32_t samples_per_wave = 16; // at most, of one pixel: neighbouring paths are then almost the same ray
 constexpr std::uint32_t compact_run = 64;
 
+/// Paths of a wave: the tunable, less where the picture has fewer or memory is short (half of what is left is for others).
+std::uint32_t wave_paths(const Device& device, std::uint32_t pixels) {
+    constexpr std::size_t bytes_per_path = 8 + 6 * 16 + 4 * 4 + 2 * 16, least = 4096;
+    const bool cpu = device.facts().type == DeviceType::cpu;
+    std::size_t n = static_cast<std::size_t>(std::max(16, device.tunable("wave_paths", cpu ? 1 << 16 : 1 << 20)));
+    n = std::min(n, std::size_t{pixels} * samples_per_wave);
+    while (n > least && (n * bytes_per_path > device.free_bytes() / 2 || n * 16 > device.max_alloc_bytes())) n /= 2;
+    return static_cast<std::uint32_t>(n);
+}
+
 } // namespace
 
-PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light)
+PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light, std::uint32_t pixels)
     : device_(device), volume_(volume), light_(light), width_(packet_width(device)) {
-    const bool cpu = device.facts().type == DeviceType::cpu;
-    capacity_ = static_cast<std::uint32_t>(std::max(16, device.tunable("wave_paths", cpu ? 1 << 16 : 1 << 20)));
-
+    capacity_ = wave_paths(device, pixels);
     per_packet_ = {static_cast<std::size_t>(device.tunable("packet_group", width_ == 1 ? 64 : 1))};
     per_path_ = {static_cast<std::size_t>(device.tunable("shade_group", 64))};
     Defines packet = volume.defines(), scalar = volume.defines();

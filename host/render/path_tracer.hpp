@@ -16,8 +16,9 @@ struct PixelSums {
 
 class PathTracer {
 public:
-    /// `volume` and `light` outlive the tracer. Waves hold tunable "wave_paths" paths (default 65536 on CPUs, 1048576 elsewhere).
-    PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light);
+    /// For a picture of so many pixel numbers. `volume` and `light` outlive the tracer. Waves hold tunable "wave_paths" paths (default
+    /// 65536 on CPUs, 1048576 elsewhere).
+    PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light, std::uint32_t pixels);
 
     /// Adds samples first_sample .. first_sample + samples - 1 to pixels first_pixel .. first_pixel + pixels - 1, in sample order, into
     /// sums[offset ...]. Returns false, with those sums undefined, when `cancelled` became true.

@@ -156,7 +156,7 @@ void Renderer::trace(Frame& frame, const RenderControl& control) {
     const auto begin = clock::now();
     const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
     for (auto& w : workers_)
-        if (!w->tracer) w->tracer.emplace(w->device, w->volume, *w->light);
+        if (!w->tracer) w->tracer.emplace(w->device, w->volume, *w->light, numbers_);
 
     PixelSums sums{std::vector<shared::float4>(numbers_), std::vector<shared::float4>(numbers_)}, finished = sums;
     int reached = 0;

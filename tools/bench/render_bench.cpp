@@ -92,7 +92,7 @@ int main(int argc, char** argv) {
         const double rays = static_cast<double>(scene.width) * scene.height;
         fmt::print("{}, packets of {}, 256^3 u8, {}x{}\n", device.facts().name, packet_width(device), scene.width, scene.height);
 
-        PathTracer tracer(device, volume, light);
+        PathTracer tracer(device, volume, light, static_cast<std::uint32_t>(rays));
         std::vector<float> distance, planes(10 * static_cast<std::size_t>(rays)), native_planes;
         compare(
             "delta tracking", rays, [&] { tracer.fly_camera_rays(static_cast<std::uint32_t>(rays)); },
