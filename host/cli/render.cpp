@@ -105,7 +105,9 @@ int render_view(Renderer& renderer, const Scene& scene, const RenderOptions& o, 
         RenderControl control;
         control.seconds = o.seconds;
         control.cancelled = &interrupted;
+        std::atomic<int> reached{0};
         control.progress = [&](const RenderProgress& p) {
+            if (reached.exchange(p.samples) < p.samples) spdlog::debug("{} samples per pixel done", p.samples);
             const double share = o.seconds > 0 ? std::min(1.0, bar.seconds() / o.seconds) : p.done;
             bar.update(share, fmt::format("{} spp, {:.2f} Mpaths/s", p.samples, p.done * paths / bar.seconds() * 1e-6));
         };

@@ -30,9 +30,9 @@ protected:
 TEST_F(Info, TextShowsGeometryRangeHistogramAndPlan) {
     const Outcome o = run({raw()});
     EXPECT_EQ(o.exit_code, 0) << o.err;
-    for (const char* part : {"RAW, CT", "32 x 24 x 20 u8", "0.5 x 1 x 2 mm", "16 x 24 x 40 mm", "i A->P, j L->R, k I->S",
-                             "oblique by 36.9 degrees", "1, 2, 3 mm (LPS)", "-980 to -582 = 2 x stored - 1000, stored 10 to 209",
-                             "in the tallest bar", "█", "voxels an edge", "fits:"})
+    for (const char* part :
+         {"RAW, CT", "32 x 24 x 20 u8", "0.5 x 1 x 2 mm", "16 x 24 x 40 mm", "i A->P, j L->R, k I->S", "oblique by 36.9 degrees",
+          "1, 2, 3 mm (LPS)", "-980 to -582 = 2 x stored - 1000, stored 10 to 209", "in the tallest bar", "█", "voxels an edge", "fits:"})
         EXPECT_NE(o.out.find(part), std::string::npos) << part << "\nis not in\n" << o.out;
 }
 

@@ -46,6 +46,8 @@ public:
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text(out_), text(err_)};
     }
     pid_t pid() const { return pid_; }
+    /// What it has written to stderr so far.
+    std::string err() const { return text(err_); }
 
 private:
     std::filesystem::path out_, err_;
