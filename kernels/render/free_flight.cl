@@ -23,8 +23,7 @@ __kernel void free_flight(VOLUME_ARGS, __constant RenderParams* render, PATH_ARG
         collided |= real;
         flying &= v_not(real);
     }
-    Int3 i;
-    Vec3 p = stop_position(vol.p, &w, &i);
+    Vec3 p = along(w.ray.o, w.ray.d, w.t); // not stop_position: in the half voxel at the volume's border that is another point
     float x[CLVR_WIDTH], y[CLVR_WIDTH], z[CLVR_WIDTH];
     int to[CLVR_WIDTH], hit[CLVR_WIDTH], on[CLVR_WIDTH];
     v_store(p.x, x), v_store(p.y, y), v_store(p.z, z), v_store(path, to), v_store(collided, hit), v_store(lanes, on);
