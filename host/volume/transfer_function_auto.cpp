@@ -104,8 +104,8 @@ bool hounsfield_units(const Voxels& v, const ValueCounts& counts) {
 TransferFunction body_transfer_function() {
     const Color skin{0.95, 0.74, 0.62}, flesh{0.94, 0.66, 0.56}, vessel{0.95, 0.60, 0.51}, bone{0.98, 0.93, 0.85}, enamel{0.99, 0.97, 0.93};
     TransferFunction tf;
-    tf.points = {{-600, skin, 0},     {-450, skin, 0.03},  {-200, skin, 0.03}, {-120, flesh, 0.01}, {100, flesh, 0.015},
-                 {160, vessel, 0.05}, {220, vessel, 0.15}, {330, bone, 0.5},   {550, bone, 0.9},    {1600, enamel, 1}};
+    tf.points = {{-600, skin, 0},   {-450, skin, 0.03},  {-200, skin, 0.03},  {-120, flesh, 0.01}, {-20, flesh, 0.015}, {20, flesh, 0.05},
+                 {90, flesh, 0.05}, {160, vessel, 0.08}, {220, vessel, 0.15}, {330, bone, 0.5},    {550, bone, 0.9},    {1600, enamel, 1}};
     for (Point& p : tf.points)
         for (double& c : p.color) c = srgb_decode(c);
     return tf;
