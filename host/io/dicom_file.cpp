@@ -1,5 +1,5 @@
 #include "host/io/dicom_file.hpp"
-#include "host/io/volume_itk.hpp"
+#include "host/io/header_text.hpp"
 #include "host/io/volume_samples.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // DICOM series: compressed pixels by GDCM, headers, grouping and order by clvr (ITK's series reader stretches the spacing over a gap).
 #include "host/io/dicom_pixels.hpp"
 #include "host/io/dicom_series.hpp"
-#include "host/io/volume_itk.hpp"
+#include "host/io/header_text.hpp"
 #include "host/io/volume_readers.hpp"
 #include "host/io/volume_samples.hpp"
 

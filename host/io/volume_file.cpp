@@ -1,9 +1,9 @@
 #include "host/io/volume_file.hpp"
+#include "host/io/header_text.hpp"
 #include "host/io/volume_readers.hpp"
 #include "host/io/volume_samples.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -21,11 +21,6 @@ constexpr const char* supported =
     "slices), VTK image (.vtk), RAW (name_WxHxD_type.raw, .raw.gz)";
 
 enum class Format { unknown, nifti, nrrd, metaimage, dicom, tiff, vtk, raw };
-
-std::string lower(std::string s) {
-    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return s;
-}
 
 bool ends_with(const std::string& s, const std::string& end) {
     return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
@@ -63,7 +58,7 @@ Format format_of_name(const std::string& name) {
 }
 
 Format format_of_file(const std::string& path, const VolumeReadOptions& options) {
-    const std::string name = lower(fs::path(path).filename().string());
+    const std::string name = lower_case(fs::path(path).filename().string());
     const Format by_name = format_of_name(name);
     if (by_name == Format::raw || options.dims) return Format::raw;
     if (ends_with(name, ".img") || ends_with(name, ".img.gz")) return Format::nifti; // voxels alone: the header is beside
@@ -129,7 +124,7 @@ Voxels read_folder(const std::string& path, const VolumeReadOptions& options) {
         if (!entry.is_regular_file()) continue;
         const std::string head = read_head(entry.path().string(), 132);
         const Format format = format_of_head(head);
-        const Format by_name = format_of_name(lower(entry.path().filename().string()));
+        const Format by_name = format_of_name(lower_case(entry.path().filename().string()));
         if (format == Format::dicom || by_name == Format::dicom) return read_dicom(path, options);
         if (format == Format::tiff || by_name == Format::tiff) tiffs.push_back(entry.path());
     }

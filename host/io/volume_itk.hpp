@@ -1,9 +1,9 @@
 // Formats with a text header: clvr checks what the header promises against the file, then ITK decodes.
 #pragma once
+#include "host/io/header_text.hpp"
 #include "host/io/volume_samples.hpp"
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace clvr {
@@ -32,18 +32,5 @@ enum class ItkReader { nrrd, metaimage, vtk };
 /// Decodes with ITK's ImageIO (straight into the voxels where the type is kept) after check_payload. Throws Error{input}, too, where ITK
 /// understands the header otherwise than clvr.
 Voxels decode_with_itk(ItkReader reader, const Container& c, const std::string& path, const std::string& format, int frame);
-
-/// The numbers of a text, separated by blanks, commas or parentheses; nothing when a word is no number.
-std::optional<std::vector<double>> parse_numbers(std::string_view text);
-/// `count` whole numbers of at least `least`. Throws Error{input} naming the field.
-std::vector<std::int64_t> parse_integers(std::string_view text, std::size_t count, std::int64_t least, const char* field,
-                                         const std::string& path);
-/// `count` voxel sizes: throws Error{input} unless all are finite and not 0.
-void check_spacing(std::string_view text, std::size_t count, const char* field, const std::string& path);
-/// "True" and "False" in MetaImage, blanks around words, capital letters.
-std::string_view trimmed(std::string_view s);
-std::string lower_case(std::string_view s);
-/// The file that a header names, relative to the header's folder. Throws Error{input} when it is missing.
-std::string beside(const std::string& header, const std::string& name);
 
 } // namespace clvr

@@ -54,7 +54,8 @@ void allocate_bytes(std::vector<unsigned char>& to, std::uint64_t bytes, const s
 void allocate(Voxels& v);
 /// Reverses the bytes of each of `n` samples.
 void swap_samples(void* samples, SampleType type, std::size_t n);
-/// Stores `n` samples in host byte order as voxels first .. first + n - 1 (v.type is kept_type(type), or f32).
+/// Stores `n` samples in host byte order as voxels first .. first + n - 1 (v.type is kept_type(type), or f32). `samples` may be
+/// where those voxels are when both have the same size.
 void store_samples(const void* samples, SampleType type, std::size_t n, Voxels& v, std::size_t first);
 /// Allocates v and fills it from the stream, in pieces, so that nothing is held twice. Throws Error{input} when the stream ends too early.
 void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v);

@@ -25,7 +25,8 @@ public:
         const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
         TIFFOpenOptionsSetErrorHandlerExtR(options.get(), &TiffFile::complain, this);
         TIFFOpenOptionsSetWarningHandlerExtR(options.get(), &TiffFile::warn, this);
-        handle_.reset(TIFFOpenExt(path.c_str(), "r", options.get()));
+        // m: not mapped into memory, where the file would count a second time.
+        handle_.reset(TIFFOpenExt(path.c_str(), "rm", options.get()));
         if (!handle_) fail();
     }
     TIFF* get() const { return handle_.get(); }
