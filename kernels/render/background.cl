@@ -5,7 +5,7 @@
 #include "lib/paths.clh"
 
 // Radiance of the environment image between texel centres, columns wrapping around.
-inline Vec3 interpolated_environment(const Light* l, Vec3 dir) {
+static inline Vec3 interpolated_environment(const Light* l, Vec3 dir) {
     __constant RenderParams* p = l->p;
     int w = p->environment_width, h = p->environment_height;
     float x = fma(p->sky.z, dir.x, p->sky.w * dir.y), y = fma(p->sky.z, dir.y, -p->sky.w * dir.x);

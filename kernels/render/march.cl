@@ -23,12 +23,12 @@ typedef struct {
     vmask met;                                      // lanes with a visible sample
 } MarchSums;
 
-inline Vec3 add_where(vmask m, Vec3 sum, Vec3 v, vfloat w) {
+static inline Vec3 add_where(vmask m, Vec3 sum, Vec3 v, vfloat w) {
     return vec3(v_select(m, fma(w, v.x, sum.x), sum.x), v_select(m, fma(w, v.y, sum.y), sum.y), v_select(m, fma(w, v.z, sum.z), sum.z));
 }
 
 // Unit normal turned against the ray; 0 where the gradient is 0. *steepness: the gradient's length.
-inline Vec3 facing_normal(const Volume* vol, Vec3 p, Vec3 dir, vfloat* steepness) {
+static inline Vec3 facing_normal(const Volume* vol, Vec3 p, Vec3 dir, vfloat* steepness) {
     Vec3 g = world_gradient(vol, p);
     *steepness = sqrt(inner3(g, g));
     vfloat s = 1.0f / v_select(v_gt(*steepness, (vfloat)(0.0f)), *steepness, (vfloat)(1.0f));
@@ -36,7 +36,7 @@ inline Vec3 facing_normal(const Volume* vol, Vec3 p, Vec3 dir, vfloat* steepness
 }
 
 // Moves the lanes of *active to their first lattice point (from *k on) in a cell with extinction; clears lanes that leave.
-inline Vec3 seek_visible(const Volume* vol, const Ray* r, vfloat t0, vfloat t1, float step, vint* k, vmask* active, vfloat* t, Int3* i) {
+static inline Vec3 seek_visible(const Volume* vol, const Ray* r, vfloat t0, vfloat t1, float step, vint* k, vmask* active, vfloat* t, Int3* i) {
     Vec3 p;
     vmask seeking = *active;
     do {
@@ -58,7 +58,7 @@ inline Vec3 seek_visible(const Volume* vol, const Ray* r, vfloat t0, vfloat t1, 
     return p;
 }
 
-inline void march_ray(const Volume* vol, __constant RenderParams* render, Vec3 pos_index, Vec3 dir_world, vmask lanes, MarchSums* sums) {
+static inline void march_ray(const Volume* vol, __constant RenderParams* render, Vec3 pos_index, Vec3 dir_world, vmask lanes, MarchSums* sums) {
     Ray ray = make_ray(vol->p, pos_index, dir_world);
     float step = render->step;
     vfloat t0, t1, t, half_depth = (vfloat)(1.0f);

@@ -8,7 +8,7 @@
 
 #define ROULETTE_FROM 3 // bounces
 
-inline float greatest(Vec3 v) { return v_max(v_max(v.x, v.y), v.z); }
+static inline float greatest(Vec3 v) { return v_max(v_max(v.x, v.y), v.z); }
 
 __kernel void shade(VOLUME_ARGS, LIGHT_ARGS, __global const float* lobe, PATH_ARGS, __global const uint* active, __global uint* state, uint count, uint bounce) {
     Volume vol = VOLUME_HERE;

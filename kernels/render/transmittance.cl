@@ -24,7 +24,8 @@ __kernel void transmittance(VOLUME_ARGS, __constant RenderParams* render, PATH_A
         transmitted = v_select(flying, transmitted * passed, transmitted);
         vmask weak = v_lt(transmitted, (vfloat)(0.0625f)) & flying;
         vmask ends = (weak & v_lt(choice, (vfloat)(0.5f))) | v_le(transmitted, (vfloat)(0.0f));
-        transmitted = v_select(weak, v_select(ends, (vfloat)(0.0f), transmitted * 2.0f), transmitted);
+        // fma: twice a product is the sum of two, which a compiler would fuse with the product.
+        transmitted = v_select(weak, v_select(ends, (vfloat)(0.0f), fma(transmitted, (vfloat)(2.0f), (vfloat)(0.0f))), transmitted);
         flying &= v_not(ends);
     }
     float share[CLVR_WIDTH];
