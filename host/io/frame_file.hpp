@@ -7,7 +7,8 @@
 
 namespace clvr {
 
-/// Scanline float32 ZIP OpenEXR with all channels and string attributes. Written beside, synced, renamed. Throws Error{input} when it cannot be written.
+/// Scanline float32 ZIP OpenEXR with all channels and string attributes. Written beside, synced, renamed. Throws Error{input} when it
+/// cannot be written.
 void write_exr(const Frame& frame, const std::string& path);
 /// Reads any scanline or tiled, half or float (or uint) EXR, channels in any order; the data window becomes the frame. Throws Error{input}.
 Frame read_exr(const std::string& path);
@@ -17,8 +18,9 @@ struct Tonemap {
     std::string curve = "filmic";
     double exposure = 0;
 };
-/// R G B A of the frame as 8-bit RGBA with straight alpha when alpha is not 1 everywhere, else RGB. Exposure and curve act on the straight colour
-/// C / A: the colour of a silhouette is that of the surface beside it, over every page that the picture is laid on. Throws Error{input, usage}.
+/// R G B A of the frame as 8-bit RGBA with straight alpha when alpha is not 1 everywhere, else RGB. Exposure and curve act on the straight
+/// colour C / A: the colour of a silhouette is that of the surface beside it, over every page that the picture is laid on. Throws
+/// Error{input, usage}.
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);
 
 /// Linear RGB image, row 0 on top: [width*height*3].

@@ -22,11 +22,16 @@ const char* voxel_type_name(VoxelType t);
 template <class F>
 decltype(auto) with_voxel_type(VoxelType t, F&& f) {
     switch (t) {
-    case VoxelType::u8: return f(std::uint8_t{});
-    case VoxelType::i8: return f(std::int8_t{});
-    case VoxelType::u16: return f(std::uint16_t{});
-    case VoxelType::i16: return f(std::int16_t{});
-    case VoxelType::f32: return f(float{});
+    case VoxelType::u8:
+        return f(std::uint8_t{});
+    case VoxelType::i8:
+        return f(std::int8_t{});
+    case VoxelType::u16:
+        return f(std::uint16_t{});
+    case VoxelType::i16:
+        return f(std::int16_t{});
+    case VoxelType::f32:
+        return f(float{});
     }
     throw std::logic_error("voxel type");
 }
@@ -39,15 +44,17 @@ struct Voxels {
     std::vector<unsigned char> bytes; ///< dims[0]*dims[1]*dims[2]*voxel_bytes(type), host byte order
     double slope = 1, intercept = 0;
     Geometry geometry;
-    std::string source;               ///< the file (or "demo:head") this came from
-    std::string format;               ///< "NIfTI", "DICOM series", ...
-    std::string modality;             ///< "CT", "MR", ... where the file says so, else empty
-    std::size_t repaired = 0;         ///< NaN and infinite voxels that were replaced
-    std::vector<std::string> notes;   ///< what the reader wants the user to know (a warning a line)
+    std::string source;             ///< the file (or "demo:head") this came from
+    std::string format;             ///< "NIfTI", "DICOM series", ...
+    std::string modality;           ///< "CT", "MR", ... where the file says so, else empty
+    std::size_t repaired = 0;       ///< NaN and infinite voxels that were replaced
+    std::vector<std::string> notes; ///< what the reader wants the user to know (a warning a line)
 
     std::size_t count() const { return static_cast<std::size_t>(dims[0]) * dims[1] * dims[2]; }
     template <class T>
-    const T* data() const { return reinterpret_cast<const T*>(bytes.data()); }
+    const T* data() const {
+        return reinterpret_cast<const T*>(bytes.data());
+    }
 };
 
 /// Least and greatest stored value, and a histogram of 1024 equal bins over [low, high] in stored values (the last bin closed).
