@@ -15,6 +15,12 @@ double phase_distribution(double g, double cosine) {
     return (1 - g * g) / (2 * g) * (1 / std::sqrt(1 + g * g - 2 * g * cosine) - 1 / (1 + g));
 }
 
+double phase_cosine(double g, double u) {
+    if (g == 0) return 2 * u - 1;
+    const double s = 1 / (1 / (1 + g) + u * 2 * g / (1 - g * g));
+    return (1 + g * g - s * s) / (2 * g);
+}
+
 double glossy_value(const Double3& normal, const Double3& out, const Double3& in) {
     const double cos_out = inner(normal, out), cos_in = inner(normal, in);
     if (cos_out <= 0 || cos_in <= 0) return 0;

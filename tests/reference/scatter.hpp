@@ -8,6 +8,8 @@ namespace clvr::reference {
 double phase_density(double g, double cosine);
 /// Its distribution function over the cosine: the chance of a smaller one.
 double phase_distribution(double g, double cosine);
+/// The cosine whose distribution function is u.
+double phase_cosine(double g, double u);
 
 /// The glossy lobe: GGX of roughness alpha 0.3, height-uncorrelated Smith masking, Schlick's reflectance of ior 1.5; times the cosine of
 /// `in`. All unit vectors, `out` and `in` point away from the surface.

@@ -62,7 +62,7 @@ inline Scene golden_scene(const std::string& name) {
     if (name == "automatic") {
         s.phase_g = 0.3;
         s.light.headlight = 0.4;
-        s.clip_plane = ClipPlane{{1, -2, 0.5}, 60};
+        s.clip_plane = ClipPlane{{0.4, -1, 0.6}, 24};
     } else if (name == "gradient") {
         s.shading = Shading::gradient;
         s.bounces = 0;
@@ -88,6 +88,7 @@ inline Scene golden_scene(const std::string& name) {
     } else {
         s.mode = name == "dvr" ? Mode::dvr : Mode::mip;
         s.features = name == "dvr";
+        if (name == "dvr") s.background.kind = Background::Kind::environment;
     }
     return s;
 }
