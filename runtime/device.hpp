@@ -67,6 +67,8 @@ public:
     /// Most work-items in a group of this kernel on its device: at most the device's own limit, less where registers or private memory are
     /// short.
     std::size_t max_local_items() const { return max_local_items_; }
+    /// A one-dimensional local size: `wanted`, or what this kernel takes at most on its device.
+    Range group(std::size_t wanted) const { return {wanted < max_local_items_ ? wanted : max_local_items_}; }
 
 private:
     friend class Device;

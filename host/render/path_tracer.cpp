@@ -26,8 +26,8 @@ std::uint32_t wave_paths(const Device& device, std::uint32_t pixels) {
 PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light, std::uint32_t pixels)
     : device_(device), volume_(volume), light_(light), width_(packet_width(device)) {
     capacity_ = wave_paths(device, pixels);
-    per_packet_ = {static_cast<std::size_t>(device.tunable("packet_group", width_ == 1 ? 64 : 1))};
-    per_path_ = {static_cast<std::size_t>(device.tunable("shade_group", 64))};
+    per_packet_ = static_cast<std::size_t>(device.tunable("packet_group", width_ == 1 ? 64 : 1));
+    per_path_ = static_cast<std::size_t>(device.tunable("shade_group", 64));
     Defines packet = volume.defines(), scalar = volume.defines();
     packet["CLVR_WIDTH"] = std::to_string(width_);
     scalar["CLVR_WIDTH"] = "1";
@@ -65,7 +65,8 @@ bool PathTracer::trace(std::uint32_t first_pixel, std::uint32_t pixels, std::uin
             if (cancelled) return false;
             const std::uint32_t k = std::min(at_once, samples - s);
             trace_wave(first_pixel + done, n, first_sample + s, k);
-            device_.launch(accumulate_, {n}, {64}, {n * (32.0 + 16.0 * k), 0}, radiance_, mean_, deviation_, n, k, first_sample + s);
+            device_.launch(accumulate_, {n}, accumulate_.group(64), {n * (32.0 + 16.0 * k), 0}, radiance_, mean_, deviation_, n, k,
+                           first_sample + s);
         }
         device_.read(mean_, &sums.mean[offset + done], n * sizeof(shared::float4));
         device_.read(deviation_, &sums.deviation[offset + done], n * sizeof(shared::float4));
@@ -96,16 +97,18 @@ void PathTracer::trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std
 
 void PathTracer::start_paths(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples) {
     const std::uint32_t n = pixels * samples;
-    device_.launch(camera_rays_, {n}, per_path_, {n * 92.0, 0}, light_.render(), paths(), active_, n, first_pixel, first_sample, samples);
+    device_.launch(camera_rays_, {n}, camera_rays_.group(per_path_), {n * 92.0, 0}, light_.render(), paths(), active_, n, first_pixel,
+                   first_sample, samples);
 }
 
 void PathTracer::fly(std::uint32_t active, std::uint32_t bounce) {
-    device_.launch(free_flight_, packets(active), per_packet_, {}, volume_.arguments(), light_.render(), paths(), active_, active, bounce);
+    device_.launch(free_flight_, packets(active), free_flight_.group(per_packet_), {}, volume_.arguments(), light_.render(), paths(),
+                   active_, active, bounce);
 }
 
 void PathTracer::shade(std::uint32_t active, std::uint32_t bounce) {
-    device_.launch(shade_, {active}, per_path_, {}, volume_.arguments(), light_.arguments(), lobe_, paths(), active_, state_, active,
-                   bounce);
+    device_.launch(shade_, {active}, shade_.group(per_path_), {}, volume_.arguments(), light_.arguments(), lobe_, paths(), active_, state_,
+                   active, bounce);
 }
 
 PathTracer::Survivors PathTracer::list_survivors(std::uint32_t active) {
@@ -120,7 +123,8 @@ PathTracer::Survivors PathTracer::list_survivors(std::uint32_t active) {
 
 void PathTracer::gather_light(std::uint32_t lit, std::uint32_t bounce) {
     if (lit == 0) return;
-    device_.launch(transmittance_, packets(lit), per_packet_, {}, volume_.arguments(), light_.render(), paths(), shadowed_, lit, bounce);
+    device_.launch(transmittance_, packets(lit), transmittance_.group(per_packet_), {}, volume_.arguments(), light_.render(), paths(),
+                   shadowed_, lit, bounce);
 }
 
 BufferList PathTracer::paths() const { return {&path_id_, &origin_, &heading_, &weight_, &radiance_, &shadow_heading_, &shadow_light_}; }

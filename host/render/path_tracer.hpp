@@ -49,7 +49,7 @@ private:
     const LightTables& light_;
     std::uint32_t capacity_;
     int width_;
-    Range per_packet_, per_path_; // local sizes
+    std::size_t per_packet_, per_path_; // local sizes wanted
     Kernel camera_rays_, free_flight_, shade_, compact_, transmittance_, accumulate_;
     Buffer lobe_;
     Buffer path_id_, origin_, heading_, weight_, radiance_, shadow_heading_, shadow_light_;

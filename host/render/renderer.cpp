@@ -248,7 +248,7 @@ void Renderer::lay_background(Frame& frame) {
         deal(Marcher::pixels_per_launch, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
             Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
             Buffer out = w.device.buffer(count * sizeof(shared::float4), "background");
-            w.device.launch(kernel, {count}, {64}, {}, w.light->arguments(), first, count, out);
+            w.device.launch(kernel, {count}, kernel.group(64), {}, w.light->arguments(), first, count, out);
             w.device.read(out, &under[first], count * sizeof(shared::float4));
         });
     }
