@@ -56,12 +56,13 @@ TransferTable tabulate(const TransferFunction& tf, const Voxels& v, double low, 
     TransferTable table;
     table.first = points.front().value;
     table.last = points.back().value;
-    const double scale = std::max({std::fabs(table.first), std::fabs(table.last), high - low});
-    const double least = (scale > 0 ? scale : 1) * 0x1p-16;
-    const bool one_value = table.last - table.first < least; // a constant or one step
+    const double greatest = std::max(std::fabs(table.first), std::fabs(table.last)), scale = greatest > 0 ? greatest
+                                                                                             : high > low ? high - low
+                                                                                                          : 1;
+    const bool one_value = table.last - table.first < scale * 0x1p-22; // a constant or one step, as far as float values can tell
     if (one_value) {
-        table.first -= least / 2;
-        table.last += least / 2;
+        table.first -= scale * 0x1p-17;
+        table.last += scale * 0x1p-17;
     }
     table.opacity.resize(transfer_entries);
     table.color.resize(transfer_entries * 4);

@@ -113,7 +113,7 @@ ValueCounts value_counts(const Voxels& v, double low, double high) {
             // Outliers: beyond the robust ends the range is mostly empty. One bin that holds nearly everything hides structure, too.
             const auto [first, last] = robust_ends(counts.all);
             const std::size_t most = mode(counts.all);
-            const bool one_bin = counts.all[most] * 1e5 > (1e5 - 1) * static_cast<double>(v.count());
+            const bool one_bin = counts.all[most] * 1e4 > (1e4 - 1) * static_cast<double>(v.count());
             const std::size_t from = one_bin ? most : first, to = one_bin ? most : last;
             if ((to - from + 1) * 4 > counts.bins()) break;
             const double finer_low = std::max(low, counts.value(double(from) - 0.5)),
