@@ -3,10 +3,10 @@
 #include "host/io/volume_samples.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 namespace clvr {
 
@@ -23,13 +23,22 @@ struct Description {
 constexpr const char* how_to_describe =
     "name it name_WxHxD_type.raw, put a JSON file with \"dims\" and \"type\" beside it, or give --dims WxHxD --type TYPE";
 
-/// The names of the Open SciVis Datasets: name_WxHxD_type.raw, .raw.gz.
-void from_name(Description& d, const std::string& name) {
-    static const std::regex form(R"(.*_(\d{1,9})x(\d{1,9})x(\d{1,9})_([A-Za-z0-9]+)\.raw(\.gz)?)");
-    std::smatch m;
-    if (!std::regex_match(name, m, form)) return;
-    d.dims = FileDims{std::stoll(m[1]), std::stoll(m[2]), std::stoll(m[3])};
-    d.type = m[4];
+/// "name", "256x256x128" and "uint16" of name_256x256x128_uint16.raw or .raw.gz, the names of the Open SciVis Datasets.
+void from_name(Description& d, std::filesystem::path name) {
+    if (name.extension() == ".gz") name.replace_extension();
+    const std::string stem = name.stem().string();
+    const auto type = stem.rfind('_'), dims = type == std::string::npos || type == 0 ? type : stem.rfind('_', type - 1);
+    if (type == std::string::npos || dims == std::string::npos) return;
+    FileDims size;
+    const char *at = stem.data() + dims, *const end = stem.data() + type;
+    for (std::int64_t& n : size) {
+        const auto [next, error] = std::from_chars(at + 1, end, n);
+        if (error != std::errc() || (next != end && *next != 'x')) return;
+        at = next;
+    }
+    if (at != end) return;
+    d.dims = size;
+    d.type = stem.substr(type + 1);
 }
 
 template <std::size_t N>
@@ -80,7 +89,7 @@ std::string sidecar_of(const std::string& path) {
 
 Description describe_raw(const std::string& path, const VolumeReadOptions& options) {
     Description d;
-    from_name(d, std::filesystem::path(path).filename().string());
+    from_name(d, std::filesystem::path(path).filename());
     if (const std::string sidecar = sidecar_of(path); std::filesystem::is_regular_file(sidecar)) from_sidecar(d, sidecar);
     if (options.dims) d.dims = FileDims{(*options.dims)[0], (*options.dims)[1], (*options.dims)[2]};
     if (!options.type.empty()) d.type = options.type;

@@ -22,6 +22,13 @@ TEST(VolumeRaw, TakesTheNamesOfTheOpenSciVisDatasets) {
     EXPECT_EQ(read_volume(write(folder / "x_3x2x1_float64.raw", std::string(48, '\1'))).type, VoxelType::f32);
 }
 
+TEST(VolumeRaw, OtherNamesSayNothing) {
+    const Folder folder;
+    for (const char* name : {"a.raw", "_.raw", "5x4x3_int16.raw", "a_5x4_int16.raw", "a_5x4x3x2_int16.raw", "a_5x4xz_int16.raw",
+                             "a_5x4x3_.raw", "a_int16.raw", "__.raw.gz"})
+        expect_error([&] { read_volume(write(folder / name, bytes_of(Sample().voxels))); }, {"name_WxHxD_type.raw"});
+}
+
 TEST(VolumeRaw, SidecarAndOptionsSayMore) {
     const Folder folder;
     const Sample s;
