@@ -41,12 +41,12 @@ void check_camera(const Camera& camera) {
     check_finite("camera.up", camera.up);
     if (norm(camera.up) == 0) refuse("camera.up", "0 0 0", "a direction");
     if (camera.eye.has_value() != camera.target.has_value())
-        refuse("camera", camera.eye ? "an eye without a target" : "a target without an eye", "both or neither");
+        refuse("--eye, --target", camera.eye ? "an eye without a target" : "a target without an eye", "both or neither");
     if (!camera.eye) return;
-    check_finite("camera.eye", *camera.eye);
-    check_finite("camera.target", *camera.target);
+    check_finite("--eye", *camera.eye);
+    check_finite("--target", *camera.target);
     const Double3 view = *camera.target - *camera.eye;
-    if (norm(view) == 0) refuse("camera.target", "the place of the eye", "another place");
+    if (norm(view) == 0) refuse("--target", "the place of the eye", "another place");
     if (norm(cross(view, camera.up)) <= 1e-6 * norm(view) * norm(camera.up))
         refuse("camera.up", "parallel to the view", "another direction");
     if (camera.orthographic && camera.height == 0) refuse("camera.height", "0", "the height of the orthographic view in mm");
@@ -57,12 +57,12 @@ void check_light(const Light& light) {
     if ((light.environment == Light::Environment::image) != !light.image.empty())
         refuse("light.image", light.image.empty() ? "empty" : fmt::format("'{}'", light.image),
                "a file where the environment is an image, and only there");
-    check_finite("light.image_rotation", light.image_rotation);
-    check_not_negative("light.key", light.key);
-    check_finite("light.key_azimuth", light.key_azimuth);
-    check_range("light.key_elevation", light.key_elevation, -90.0, 90.0);
+    check_finite("--environment-rotation", light.image_rotation);
+    check_not_negative("--key", light.key);
+    check_finite("--key-azimuth", light.key_azimuth);
+    check_range("--key-elevation", light.key_elevation, -90.0, 90.0);
     check_range("light.key_angle", light.key_angle, 0.0, 180.0);
-    check_not_negative("light.headlight", light.headlight);
+    check_not_negative("--headlight", light.headlight);
 }
 
 void check_clips(const Scene& scene) {

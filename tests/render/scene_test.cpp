@@ -51,8 +51,8 @@ TEST(SceneTest, WhatAnOptionSetsIsNamedByIt) {
     for (double x : {-1.0, inf, nan_value}) {
         EXPECT_THAT(refusal([=](Scene& s) { s.extinction = x; }), HasSubstr("--extinction"));
         EXPECT_THAT(refusal([=](Scene& s) { s.light.level = x; }), HasSubstr("--environment"));
-        EXPECT_THAT(refusal([=](Scene& s) { s.light.key = x; }), HasSubstr("light.key"));
-        EXPECT_THAT(refusal([=](Scene& s) { s.light.headlight = x; }), HasSubstr("light.headlight"));
+        EXPECT_THAT(refusal([=](Scene& s) { s.light.key = x; }), HasSubstr("--key"));
+        EXPECT_THAT(refusal([=](Scene& s) { s.light.headlight = x; }), HasSubstr("--headlight"));
         EXPECT_THAT(refusal([=](Scene& s) { s.background.color[2] = x; }), HasSubstr("--background"));
     }
 }
@@ -69,10 +69,10 @@ TEST(SceneTest, Camera) {
         return refusal([&](Scene& s) { s.camera.eye = eye, s.camera.target = target, s.camera.up = up; });
     };
     EXPECT_EQ(look({0, -5, 0}, {0, 0, 0}, {0, 0, 1}), "");
-    EXPECT_THAT(look({1, 2, 3}, {1, 2, 3}, {0, 0, 1}), HasSubstr("camera.target"));
+    EXPECT_THAT(look({1, 2, 3}, {1, 2, 3}, {0, 0, 1}), HasSubstr("--target"));
     EXPECT_THAT(look({0, 0, 5}, {0, 0, 0}, {0, 0, 1}), HasSubstr("parallel"));
     EXPECT_THAT(look({0, 0, 5}, {0, 0, 0}, {0, 0, 0}), HasSubstr("camera.up"));
-    EXPECT_THAT(look({0, nan_value, 5}, {0, 0, 0}, {0, 1, 0}), HasSubstr("camera.eye"));
+    EXPECT_THAT(look({0, nan_value, 5}, {0, 0, 0}, {0, 1, 0}), HasSubstr("--eye"));
     EXPECT_THAT(refusal([](Scene& s) {
                     s.camera.eye = Double3{0, -5, 0}, s.camera.target = Double3{0, 0, 0};
                     s.camera.orthographic = true;
@@ -83,7 +83,7 @@ TEST(SceneTest, Camera) {
 TEST(SceneTest, LightsAndClips) {
     EXPECT_THAT(refusal([](Scene& s) { s.light.environment = Light::Environment::image; }), HasSubstr("light.image"));
     EXPECT_THAT(refusal([](Scene& s) { s.light.image = "sky.hdr"; }), HasSubstr("light.image"));
-    EXPECT_THAT(refusal([](Scene& s) { s.light.key_elevation = 91; }), HasSubstr("light.key_elevation"));
+    EXPECT_THAT(refusal([](Scene& s) { s.light.key_elevation = 91; }), HasSubstr("--key-elevation"));
     EXPECT_THAT(refusal([](Scene& s) { s.light.key_angle = 181; }), HasSubstr("light.key_angle"));
     const auto box = [](std::array<double, 6> b) { return refusal([&](Scene& s) { s.clip_box = b; }); };
     EXPECT_EQ(box({0, 0, 0, 1, 1, 1}), "");
