@@ -32,7 +32,7 @@ double glossy_value(const Double3& normal, const Double3& out, const Double3& in
 
 double glossy_albedo(double cosine) {
     const Double3 out{std::sqrt(1 - cosine * cosine), 0, cosine};
-    constexpr int polar = 2000, around = 400; // midpoints; the integrand is even in the azimuth
+    constexpr int polar = 1000, around = 200; // midpoints; the integrand is even in the azimuth
     double sum = 0;
     for (int i = 0; i < polar; ++i) {
         const double theta = (i + 0.5) * pi / 2 / polar, s = std::sin(theta), c = std::cos(theta);

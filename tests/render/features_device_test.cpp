@@ -40,7 +40,7 @@ TEST_P(Features, AgreeWithTheReference) {
     Scene scene = shell_scene(v);
     GetParam().change(scene, v);
     const Stage stage(v, scene);
-    Device device = open_device();
+    Device device = shared_device();
     const Marched found = march(device, stage);
     const reference::MarchScene truth = reference_scene(stage);
     //                         albedo            normal            depth opacity deviation half depth
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Features,
 TEST(FeatureConstants, HoldWhereNothingIsSeen) {
     const Voxels v = shell();
     const Stage stage(v, shell_scene(v));
-    Device device = open_device();
+    Device device = shared_device();
     const Marched m = march(device, stage);
     const float constants[10] = {1, 1, 1, 0, 0, 0, 1, 0, 0, 1};
     int hidden = 0;
@@ -112,7 +112,7 @@ TEST(Skipping, NeverMovesTheLattice) {
     s.camera.target = Double3{40, 40, 40};
     s.camera.eye = Double3{-90, -130, 75};
     s.camera.fov = 32;
-    Device device = open_device();
+    Device device = shared_device();
     Stage stage(v, s);
     const auto empty = std::count(stage.classified.majorants.begin(), stage.classified.majorants.end(), 0.0f);
     ASSERT_GT(empty, 20);
@@ -157,7 +157,7 @@ TEST(Step, HalvedChangesTheOpacityLittle) {
     const std::vector<TransferFunction::Point> edge{{0, white, 0}, {120, white, 0}, {123, white, 1}, {255, white, 1}},
         thin_shell{{0, white, 0}, {110, white, 0}, {120, white, 0.3}, {130, white, 0}, {255, white, 0}},
         dense_shell{{0, white, 0}, {100, white, 0}, {120, white, 1}, {140, white, 0}, {255, white, 0}};
-    Device device = open_device();
+    Device device = shared_device();
     for (const auto& points : {edge, thin_shell, dense_shell}) {
         Scene s = plain_scene(160, 1);
         s.transfer->points = points;

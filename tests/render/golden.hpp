@@ -9,11 +9,11 @@ namespace clvr::testing {
 /// pixel_hash of each golden scene, the same on every conforming device. A change means that pictures change: made on purpose only,
 /// together with DESIGN.md or a default. To make them anew: run `test_render_device --gtest_filter='Golden.*'` and copy what it prints.
 inline const std::map<std::string, std::string> golden_hashes{
-    {"automatic", "5e306e3c4a7a7176faedba2f103d6a25ae113d20c04c53a11054dc6b203e99f0"},
-    {"dvr", "44a05d92aae0b94740850c1e378e768ffc031ff4762cd8a18dac503e0d746063"},
-    {"gradient", "7d07cb70b3a3f5042e86399966fc9067773124e08fdb0bb16a81c6ef6b454404"},
+    {"automatic", "1b6fe8327194affacfc7ad8f24bd9c827568424669319adbab1e6bc46399ae94"},
+    {"dvr", "730d603450250592a3f7daa30de636b007d3528b75bfd6bc12bc9d7994a90db5"},
+    {"gradient", "a0f807e28d0b4f21e1134d3e289bfaec4d6d41fa4fdf382cf8067b65bfb8bdad"},
     {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
-    {"phase", "b98f88794069d84c22fc030fdf1a586233d99f75e6c6c6d15f143adf05dc8d5b"},
+    {"phase", "f91c27fa627945a7fa2b32b5fe4a50e2ce13e53fb2b855d0b5b967422bd8d17d"},
 };
 
 /// A solid ball with a rippled shell, 4 Mvoxel, made of whole numbers: the same voxels everywhere. Oblique, with three spacings.

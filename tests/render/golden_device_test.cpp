@@ -6,7 +6,7 @@ namespace {
 
 TEST(Golden, PicturesHaveTheirHashes) {
     for (const auto& [name, hash] : golden_hashes) {
-        const std::string found = pixel_hash(render_golden(name, {open_device()}));
+        const std::string found = pixel_hash(render_golden(name, {shared_device()}));
         EXPECT_EQ(found, hash) << "the picture of \"" << name << "\" changed; now:\n{\"" << name << "\", \"" << found << "\"},";
     }
 }
@@ -50,7 +50,7 @@ TEST(Golden, TwoSubDevicesGiveTheSameBits) {
 
 TEST(Golden, RepeatsWithinOneRendererAndAfterTurning) {
     const Scene scene = golden_scene("automatic");
-    Renderer renderer({open_device()}, golden_volume(), scene);
+    Renderer renderer({shared_device()}, golden_volume(), scene);
     EXPECT_EQ(pixel_hash(renderer.render()), golden_hashes.at("automatic"));
     Camera turned = scene.camera;
     turned.azimuth += 90;
@@ -60,7 +60,7 @@ TEST(Golden, RepeatsWithinOneRendererAndAfterTurning) {
     Scene from_there = scene;
     from_there.camera = turned;
     from_there.view = 1;
-    EXPECT_EQ(pixel_hash(Renderer({open_device()}, golden_volume(), from_there).render()), pixel_hash(other));
+    EXPECT_EQ(pixel_hash(Renderer({shared_device()}, golden_volume(), from_there).render()), pixel_hash(other));
     renderer.aim(scene.camera, scene.view);
     EXPECT_EQ(pixel_hash(renderer.render()), golden_hashes.at("automatic"));
 }
@@ -76,10 +76,10 @@ TEST(Golden, AStoppedRenderingIsTheOneThatAskedForNoMore) {
     control.progress = [&](const RenderProgress& p) {
         if (p.samples >= 7) cancelled = true;
     };
-    const Frame stopped = Renderer({open_device()}, volume, scene).render(control);
+    const Frame stopped = Renderer({shared_device()}, volume, scene).render(control);
     ASSERT_EQ(stopped.attributes.at("clvr.spp"), "7");
     scene.spp = 7;
-    EXPECT_EQ(pixel_hash(Renderer({open_device()}, volume, scene).render()), pixel_hash(stopped));
+    EXPECT_EQ(pixel_hash(Renderer({shared_device()}, volume, scene).render()), pixel_hash(stopped));
 }
 
 TEST(Golden, ATimeLimitKeepsWholePasses) {
@@ -88,16 +88,16 @@ TEST(Golden, ATimeLimitKeepsWholePasses) {
     scene.spp = 1 << 20;
     RenderControl control;
     control.seconds = 0.5;
-    const Frame limited = Renderer({open_device()}, volume, scene).render(control);
+    const Frame limited = Renderer({shared_device()}, volume, scene).render(control);
     scene.spp = std::stoi(limited.attributes.at("clvr.spp"));
     ASSERT_GE(scene.spp, 1);
     ASSERT_LT(scene.spp, 1 << 20);
-    EXPECT_EQ(pixel_hash(Renderer({open_device()}, volume, scene).render()), pixel_hash(limited));
+    EXPECT_EQ(pixel_hash(Renderer({shared_device()}, volume, scene).render()), pixel_hash(limited));
 }
 
 TEST(Golden, SeedAndViewChangeTheNoiseOnly) {
     Scene scene = golden_scene("automatic");
-    const auto picture = [&] { return Renderer({open_device()}, golden_volume(), scene).render(); };
+    const auto picture = [&] { return Renderer({shared_device()}, golden_volume(), scene).render(); };
     const Frame first = picture();
     scene.seed += 1;
     const Frame reseeded = picture();

@@ -55,7 +55,7 @@ struct Lit {
 };
 
 struct Lights : ::testing::Test {
-    Device device = open_device();
+    Device device = shared_device();
     Kernel kernel = test_kernel(device, "light_values", {{"CLVR_WIDTH", "1"}});
 
     Lit run(const Stage& stage, Function function, const std::vector<float4>& in) {

@@ -64,7 +64,7 @@ double largest_error(const Floats& found, const Floats& a, const Floats& b, bool
 }
 
 struct Math : ::testing::Test {
-    Device device = open_device();
+    Device device = shared_device();
     double error(Function f, const Floats& a, const Floats& b, bool in_ulps, double (*truth)(double, double), bool second = false) {
         const Values v = evaluate(device, 16, f, a, b);
         return largest_error(second ? v.second : v.first, a, b, in_ulps, truth);

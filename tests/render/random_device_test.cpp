@@ -51,7 +51,7 @@ Blocks device_blocks(Device& device, int width, const std::vector<Block>& counte
 }
 
 TEST(Philox, GivesThePublishedVectors) {
-    Device device = open_device();
+    Device device = shared_device();
     for (const Known& known : published) {
         EXPECT_EQ(reference::philox(known.counter, known.key), known.block);
         for (int width : {1, 4, 8, 16})
@@ -61,7 +61,7 @@ TEST(Philox, GivesThePublishedVectors) {
 }
 
 TEST(Philox, IsThePlainImplementationOnAnyCounter) {
-    Device device = open_device();
+    Device device = shared_device();
     std::mt19937 random(5);
     std::vector<Block> counters(1 << 14);
     for (Block& c : counters)
@@ -80,7 +80,7 @@ TEST(Philox, IsThePlainImplementationOnAnyCounter) {
 
 /// The numbers of neighbouring pixels, samples, blocks and streams, as the tracer counts them: uniform in 0..1, uncorrelated.
 TEST(Uniform, HasFlatHistogramAndNoNeighbourCorrelation) {
-    Device device = open_device();
+    Device device = shared_device();
     constexpr std::size_t n = 1 << 20;
     for (int axis = 0; axis < 4; ++axis) {
         std::vector<Block> counters(n, Block{7, 3, 1, 4});

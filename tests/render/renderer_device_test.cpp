@@ -67,7 +67,7 @@ TEST(Frame, MeanAndVarianceAreThoseOfTheSamples) {
     s.camera.eye = Double3{10, -20, 8};
     s.camera.fov = 20;
     const Stage stage(constant_volume({8, 8, 8}), s);
-    Device device = open_device();
+    Device device = shared_device();
     const DeviceVolume volume = stage.upload(device);
     const LightTables light(device, stage.render, {});
     PathTracer tracer(device, volume, light, 64);
@@ -154,7 +154,7 @@ TEST(NothingVisible, IsATransparentPictureAndAWarning) {
         s.mode = mode;
         s.transfer = uniform_transfer({1, 1, 1}, 0);
         const PreparedVolume volume(constant_volume({20, 20, 20}));
-        Renderer renderer({open_device()}, volume, s);
+        Renderer renderer({shared_device()}, volume, s);
         ASSERT_EQ(renderer.warnings().size(), 1u);
         EXPECT_NE(renderer.warnings()[0].find("nothing is visible"), std::string::npos);
         const Frame f = renderer.render();
@@ -246,14 +246,14 @@ TEST(Cancelling, BeforeTheFirstPassIsAnError) {
     for (bool features : {true, false}) {
         Scene s = small_scene();
         s.features = features;
-        Renderer renderer({open_device()}, volume, s);
+        Renderer renderer({shared_device()}, volume, s);
         EXPECT_EQ(kind_of([&] { renderer.render(control); }), ErrorKind::interrupted);
     }
 }
 
 TEST(Progress, RisesToOne) {
     const PreparedVolume volume(constant_volume({16, 16, 16}));
-    Renderer renderer({open_device()}, volume, small_scene(7));
+    Renderer renderer({shared_device()}, volume, small_scene(7));
     double last = 0;
     int samples = 0;
     RenderControl control;

@@ -34,7 +34,7 @@ struct Frame3 {
 };
 
 struct Scatter : ::testing::Test {
-    Device device = open_device();
+    Device device = shared_device();
     Kernel kernel = test_kernel(device, "scatter_values", {{"CLVR_WIDTH", "1"}});
     Buffer lobe = device.upload(surface_lobe_table(), "lobe");
     float g = 0;

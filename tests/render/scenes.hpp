@@ -19,6 +19,12 @@ namespace clvr::testing {
 /// The device under test, opened anew: tunables and limits set on it end with it.
 inline Device open_device(const std::string& selector = {}) { return Device::open(select_devices(selector).devices.at(0)); }
 
+/// The device under test, opened once: for tests that set nothing on it. Programs are built once, too.
+inline Device& shared_device() {
+    static Device* const device = new Device(open_device()); // never destroyed: the driver may be gone by then
+    return *device;
+}
+
 /// Voxels of stored type T with the value f(x, y, z) at each index position; spacing 1 mm, origin 0.
 template <class T, class F>
 Voxels volume_of(const Int3& dims, F&& f) {
@@ -76,7 +82,7 @@ inline void look_along_y(Scene& s, const Double3& target, double height, double 
 
 inline Frame render(const Voxels& v, const Scene& scene, const EnvironmentTables& environment = {}) {
     const PreparedVolume prepared(v);
-    return Renderer({open_device()}, prepared, scene, environment).render();
+    return Renderer({shared_device()}, prepared, scene, environment).render();
 }
 
 /// The pieces that a Renderer puts together, within reach of a test. The scene names eye, target and transfer function.

@@ -82,7 +82,7 @@ TEST_P(VolumeTypes, AgreeWithTheReference) {
                              : bytes                ? 127
                                                     : 255);
     make_oblique(v);
-    Device device = open_device();
+    Device device = shared_device();
     const Stage stage(v, scene_for(v));
     const DeviceVolume volume = stage.upload(device);
     const auto positions = probe_positions(v.dims);
@@ -109,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Types, VolumeTypes, ::testing::ValuesIn(all_types),
                          [](const auto& tested) { return voxel_type_name(tested.param); });
 
 TEST(Volume, ThinOnesAgreeWithTheReference) {
-    Device device = open_device();
+    Device device = shared_device();
     Random random(5);
     for (const Int3& dims : {Int3{1, 1, 1}, Int3{1, 40, 3}, Int3{2, 1, 40}, Int3{40, 2, 1}}) {
         const Voxels v = random_volume(random, VoxelType::u8, dims, 0, 255);
@@ -128,7 +128,7 @@ TEST(Volume, ThinOnesAgreeWithTheReference) {
 
 /// A flat volume is one brick of edge 64; bricks of any edge, in any number of pools, at any packet width, give its bits.
 TEST(Volume, BricksPoolsAndWidthsGiveTheBitsOfTheFlatVolume) {
-    Device device = open_device();
+    Device device = shared_device();
     Random random(6);
     const Voxels v = random_volume(random, VoxelType::u8, {61, 50, 57}, 0, 255);
     const Stage stage(v, scene_for(v));
@@ -156,7 +156,7 @@ TEST(Volume, BricksPoolsAndWidthsGiveTheBitsOfTheFlatVolume) {
 }
 
 TEST(Volume, RampHasNoSeams) {
-    Device device = open_device();
+    Device device = shared_device();
     const Voxels v = volume_of<std::uint8_t>({70, 70, 70}, [](int x, int y, int z) { return x + y + z; });
     const Stage stage(v, scene_for(v));
     std::vector<Double3> line;
