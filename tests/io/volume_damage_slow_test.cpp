@@ -6,9 +6,9 @@ namespace {
 
 class DamagedFormat : public ::testing::TestWithParam<VolumeFormat> {};
 
-void damage_every_byte(const std::string& file, const std::string& volume) {
+void damage_every_byte(const std::string& file, const std::string& volume, int step) {
     const std::string whole = read(file);
-    for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (std::size_t i = 0; i < whole.size(); i += static_cast<std::size_t>(step)) {
         std::string damaged = whole;
         for (const char flip : {'\x01', '\x10', '\x80', '\xff'}) {
             damaged[i] = static_cast<char>(whole[i] ^ flip);
@@ -29,8 +29,8 @@ void damage_every_byte(const std::string& file, const std::string& volume) {
 TEST_P(DamagedFormat, EveryByteChangedOrCut) {
     const Folder folder;
     const Written w = GetParam().write(folder, Sample());
-    damage_every_byte(w.payload, w.path);
-    if (w.path != w.payload && !std::filesystem::is_directory(w.path)) damage_every_byte(w.path, w.path);
+    damage_every_byte(w.payload, w.path, GetParam().step);
+    if (w.path != w.payload && !std::filesystem::is_directory(w.path)) damage_every_byte(w.path, w.path, GetParam().step);
     EXPECT_TRUE(reads_or_throws(w.path));
 }
 
