@@ -114,7 +114,7 @@ void outline(Anatomy& anatomy) {
         .ellipsoid({34, -64, -34}, {21, 20, 24}, 18)      // cheeks
         .ellipsoid({46, -16, -40}, {14, 24, 34}, 16)      // jaw angle
         .ellipsoid({56, 14, -14}, {14, 18, 22}, 16)       // behind the ear
-        .tube({{10, -82, -76, 9}, {24, -73, -74, 9}, {39, -46, -69, 9}, {46, -20, -62, 11}}, 18)
+        .tube({{10, -82, -76, 9}, {24, -73, -77, 10}, {39, -46, -73, 11}, {46, -20, -65, 11}}, 18)
         .ellipsoid({40, -40, -34}, {18, 22, 28}, 18)
         .ellipsoid({52, -6, 4}, {20, 28, 30}, 16)                         // before the ear
         .ellipsoid({20, -86, 33}, {28, 12, 10}, 16, 0, 0.3)               // brows
@@ -122,6 +122,7 @@ void outline(Anatomy& anatomy) {
         .cut({33, -104, 15}, {17, 17, 11}, 15)                            // eye sockets
         .ellipsoid({32, -75, 15}, {14, 13.5, 12.5}, 6)                    // eyes, lids closed
         .ellipsoid({0, -86, -34}, {27, 18, 18}, 12)                       // upper jaw
+        .ellipsoid({19, -82, -8}, {13, 13, 18}, 12)                       // beside the nose
         .ellipsoid({0, -88, -76}, {20, 15, 16}, 14)                       // chin
         .tube({{0, -84, 24, 9}, {0, -91, -9, 15}}, 12)                    // nose: root
         .tube({{0, -90, 26, 6.5}, {0, -101, 9, 6}, {0, -112, -9, 7}}, 12) // bridge
@@ -177,7 +178,7 @@ void bones(Anatomy& anatomy) {
     face.ellipsoid({0, -84, 40}, {24, 8, 14}, 6)
         .tube({{4, -87, 31, 6}, {24, -86, 35, 5}, {40, -78, 33, 5}, {50, -65, 25, 5}}, 6) // brows
         .tube({{50, -65, 25, 4.5}, {51, -62, 12, 4.5}, {49, -62, 2, 5}}, 5)               // outer rim of the orbit
-        .tube({{50, -62, 2, 4.5}, {38, -72, -5, 4.5}, {24, -79, -3, 4}, {16, -82, 6, 4}, {11, -86, 24, 4.5}}, 5)
+        .tube({{49, -61, 2, 4.5}, {37, -69, -5, 4.5}, {24, -76, -3, 4}, {16, -81, 6, 4}, {11, -86, 24, 4.5}}, 5)
         .tube({{0, -88, 30, 6}, {0, -92, 22, 5}, {0, -98, 11, 4}}, 5)                           // nasal bones
         .ellipsoid({46, -58, -6}, {11, 11, 11}, 7, 0, 0.6)                                      // cheek bones
         .tube({{51, -52, -6, 5}, {60, -36, -5, 3.4}, {63, -18, -4, 3.2}, {61, -2, -2, 4.5}}, 4) // zygomatic arches
@@ -335,13 +336,13 @@ void vessels(Anatomy& anatomy) {
     // Branches of the middle cerebral artery over the side of the brain.
     const double ends[][3] = {{50, -55, 60}, {56, -38, 80}, {60, -10, 92}, {60, 20, 88}, {58, 46, 72}, {58, 52, 48}, {62, 20, 24}};
     for (const auto& e : ends) {
-        const Node start{44, -8, 31, 1.6}, end = on_vault(e[0], e[1], e[2], -3.5, 0.8);
-        const Node near = on_vault(0.75 * 44 + 0.25 * e[0] + 8, 0.75 * -8 + 0.25 * e[1], 0.7 * 33 + 0.3 * e[2] + 3, -7, 1.4);
-        const Node half = on_vault(0.45 * 50 + 0.55 * e[0], 0.45 * -8 + 0.55 * e[1] + 4, 0.45 * 33 + 0.55 * e[2] - 2, -3.5, 1.2);
-        const Node three = on_vault(e[0] + 3, 0.22 * -8 + 0.78 * e[1] - 3, 0.22 * 33 + 0.78 * e[2] + 2, -3.5, 1);
+        const Node start{44, -8, 31, 1.6}, end = on_vault(e[0], e[1], e[2], -3.5, 1.2);
+        const Node near = on_vault(0.75 * 44 + 0.25 * e[0] + 8, 0.75 * -8 + 0.25 * e[1], 0.7 * 33 + 0.3 * e[2] + 3, -7, 1.6);
+        const Node half = on_vault(0.45 * 50 + 0.55 * e[0], 0.45 * -8 + 0.55 * e[1] + 4, 0.45 * 33 + 0.55 * e[2] - 2, -3.5, 1.5);
+        const Node three = on_vault(e[0] + 3, 0.22 * -8 + 0.78 * e[1] - 3, 0.22 * 33 + 0.78 * e[2] + 2, -3.5, 1.4);
         v.curves({start, near, half, three, end}, 0.8, 3);
-        v.curves({half, on_vault(e[0] + 4, e[1] * 0.7 + 12, e[2] * 0.8 + 16, -3.5, 0.9),
-                  on_vault(e[0] - 4, e[1] * 0.9 + 14, e[2] + 18, -3.5, 0.7)},
+        v.curves({half, on_vault(e[0] + 4, e[1] * 0.7 + 12, e[2] * 0.8 + 16, -3.5, 1.3),
+                  on_vault(e[0] - 4, e[1] * 0.9 + 14, e[2] + 18, -3.5, 1.1)},
                  0.8, 3);
     }
     // Venous sinuses and jugular veins; veins of the surface that join the sinus.
@@ -367,8 +368,8 @@ void vessels(Anatomy& anatomy) {
                 0.8);
     for (int i = 0; i < 5; ++i) {
         const double y = -52 + 26 * i;
-        v.curves({on_vault(2, y + 8, 118 - 0.01 * y * y, -1.5, 1.4), on_vault(16, y + 2, 114 - 0.01 * y * y, -3, 1.2),
-                  on_vault(34, y - 6, 100 - 0.01 * y * y, -3.5, 1), on_vault(46, y + (i % 2 ? 4 : -10), 84 - 0.01 * y * y, -3.5, 0.8)},
+        v.curves({on_vault(2, y + 8, 118 - 0.01 * y * y, -1.5, 1.6), on_vault(16, y + 2, 114 - 0.01 * y * y, -3, 1.5),
+                  on_vault(34, y - 6, 100 - 0.01 * y * y, -3.5, 1.4), on_vault(46, y + (i % 2 ? 4 : -10), 84 - 0.01 * y * y, -3.5, 0.8)},
                  0.8, 3);
     }
     // Arteries outside of the skull: external carotid, temporal with two branches on the vault, facial, occipital.

@@ -39,6 +39,9 @@ enum PhantomBody {
     CLVR_BODIES
 };
 
+/// The kernel displaces points by less than this along an axis [mm].
+#define CLVR_PHANTOM_BEND 1.5f
+
 /// Voxels along an axis of the cells for which the host lists the parts that can have an effect.
 #define CLVR_CELL_X 16
 #define CLVR_CELL_Y 8
@@ -46,11 +49,13 @@ enum PhantomBody {
 
 typedef struct PhantomParams {
     int4 dims;      ///< xyz: voxels
-    int4 cells;     ///< xyz: cells
+    int4 cells;     ///< xy: cells
     float4 origin;  ///< xyz: position of voxel 0 [mm]; w: 1 / width of the ramp of partial volume [1/mm]
     float4 spacing; ///< xyz [mm]
     float far[12];  ///< per body: its distance is kept within +-far, so that a part beyond its reach has exactly no effect
-    uint key0, key1, pad0, pad1;
+    uint key0, key1;
+    int opened; ///< 1: cut open to show skull and brain
+    int pad;
 } PhantomParams;
 CLVR_CHECK_SIZE(PhantomParams, 128);
 
