@@ -31,7 +31,9 @@ T at(const Stops<T>& stops, double t) {
 // Albedos are lighter and paler than the colours that they give: light that scatters several times takes them up several times.
 // Skin, bark, pottery: reddish where it is thin or light, ivory where it is dense.
 const Stops<Color> solid_colors{
-    {0, {0.95, 0.74, 0.61}}, {0.25, {0.95, 0.77, 0.63}}, {0.5, {0.96, 0.86, 0.74}}, {0.8, {0.98, 0.95, 0.90}}, {1, {0.99, 0.98, 0.96}}};
+    {0, {0.95, 0.77, 0.65}}, {0.25, {0.95, 0.79, 0.66}}, {0.5, {0.96, 0.87, 0.75}}, {0.8, {0.98, 0.95, 0.90}}, {1, {0.99, 0.98, 0.96}}};
+// Vessels and what else was cut out of its surroundings.
+const Stops<Color> cut_colors{{0, {0.92, 0.55, 0.47}}, {0.3, {0.94, 0.64, 0.54}}, {0.6, {0.96, 0.80, 0.68}}, {1, {0.98, 0.94, 0.88}}};
 // Fields that fade out: a cool haze around a glowing core.
 const Stops<Color> field_colors{
     {0, {0.48, 0.70, 0.93}}, {0.3, {0.50, 0.83, 0.84}}, {0.55, {0.99, 0.82, 0.44}}, {0.8, {0.97, 0.54, 0.30}}, {1, {0.99, 0.90, 0.74}}};
@@ -64,9 +66,12 @@ Stops<Color> wrapped_colors(double common, double dense) {
 std::vector<Point> outward(const Voxels& v, const ValueSide& side, const Stops<Color>& fading_colors) {
     const auto share = [&](double value) { return std::clamp((value - side.threshold) / (side.top - side.threshold), 0.01, 0.99); };
     const double solid = share(side.solid), common = share(side.common), dense = share(side.dense);
-    const bool wrapped = side.surfaces && side.dense_share > 0.01 && side.dense_share < 0.4 && dense_outside(v, side) < 0.2;
+    const bool wrapped = side.surfaces && !side.cut && side.dense_share > 0.01 && side.dense_share < 0.4 && dense_outside(v, side) < 0.2;
     const Stops<double> opacity = wrapped ? wrapped_opacity(solid, common, dense) : side.surfaces ? solid_opacity(solid) : field_opacity;
-    const Stops<Color> colors = wrapped ? wrapped_colors(common, dense) : side.surfaces ? solid_colors : fading_colors;
+    const Stops<Color> colors = wrapped         ? wrapped_colors(common, dense)
+                                : side.cut      ? cut_colors
+                                : side.surfaces ? solid_colors
+                                                : fading_colors;
     std::vector<double> places; // of the opacities, and as many for the colours
     for (const auto& stop : opacity) places.push_back(stop.first);
     for (int k = 1; k < 16; ++k) places.push_back(k / 16.0);

@@ -156,9 +156,10 @@ ValueSide side(const ValueCounts& counts, std::size_t background, std::size_t en
     const auto [valley, peak] = first_peak(all, occupied);
     double structure = 0, beyond_valley = 0;
     for (int b = threshold; b < coarse; ++b) structure += all[b], beyond_valley += b >= valley ? all[b] : 0;
-    const bool mode_apart = peak > occupied && beyond_valley > 0.5 * structure;
+    const bool mode_apart = peak > occupied + 2 && beyond_valley > 0.5 * structure;
     s.active = structure > 0;
     s.surfaces = gap >= 4 || mode_apart;
+    s.cut = gap >= 4 && !mode_apart;
     const double first = gap >= 4 ? threshold + 0.5 * gap : mode_apart ? 0.5 * (threshold + valley) : threshold;
     s.threshold = at(first);
     s.solid = at(std::max(first + 2, first + 0.4 * ((mode_apart ? peak : occupied) - first)));

@@ -23,7 +23,8 @@ struct ValueSide {
     int sign = 1;
     bool active = false; ///< holds structure at all
     bool surfaces =
-        false; ///< background and structure are apart: a gap or a valley in the counts. Otherwise the values fade out like a field
+        false;        ///< background and structure are apart: a gap or a valley in the counts. Otherwise the values fade out like a field
+    bool cut = false; ///< a gap, and most structure right behind it: everything less dense was cut away before (surfaces only)
     double threshold = 0;     ///< what lies nearer to the background is background
     double solid = 0;         ///< on the way to the most frequent structure: where a surface is seen (surfaces only)
     double common = 0;        ///< the first structure that is frequent: flesh, bark (surfaces only)
