@@ -69,6 +69,10 @@ std::string kernels_sha256() {
     return sha256_hex(all);
 }
 
+VolumeReadOptions reading_options(const Scene& s) {
+    return {s.frame, s.series, s.allow_gaps, s.raw.dims, s.raw.type, s.raw.spacing, s.raw.endian};
+}
+
 EnvironmentTables environment_of(const Scene& scene) {
     if (scene.light.environment != Light::Environment::image) return {};
     const RgbImage image = read_environment_image(scene.light.image);
@@ -136,9 +140,7 @@ void render(const RenderOptions& o) {
     catch_interrupts();
     const EnvironmentTables environment = environment_of(scene);
     std::vector<Device> devices = open_devices(o);
-    VolumeReadOptions reading = o.volume;
-    reading.frame = scene.frame, reading.series = scene.series, reading.allow_gaps = scene.allow_gaps;
-    const PreparedVolume volume(open_volume(scene.volume, reading, devices.front()));
+    const PreparedVolume volume(open_volume(scene.volume, reading_options(scene), devices.front()));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
         const std::string hash = volume_sha256(volume.voxels);
         if (!scene.volume_sha256.empty() && scene.volume_sha256 != hash)
@@ -174,10 +176,7 @@ void render(const RenderOptions& o) {
         scene.camera.azimuth = azimuth;
         scene.view = 0;
         scene.spp = reached;
-        if (!is_demo_volume(scene.volume)) scene.volume = std::filesystem::absolute(scene.volume).string();
-        if (!scene.light.image.empty()) scene.light.image = std::filesystem::absolute(scene.light.image).string();
-        const std::string text = to_json(scene);
-        write_atomically(o.save_scene, text.data(), text.size());
+        write_scene(scene, o.save_scene);
     }
     if (o.profile)
         for (auto& d : devices) {

@@ -182,6 +182,10 @@ Scene scene_of(const RenderOptions& o) {
     if (o.volume.frame) s.frame = o.volume.frame;
     if (!o.volume.series.empty()) s.series = o.volume.series;
     s.allow_gaps |= o.volume.allow_gaps;
+    if (o.volume.dims) s.raw.dims = o.volume.dims;
+    if (o.volume.spacing) s.raw.spacing = o.volume.spacing;
+    if (!o.volume.type.empty()) s.raw.type = o.volume.type;
+    if (!o.volume.endian.empty()) s.raw.endian = o.volume.endian;
 
     const auto set = [](auto& field, const auto& option) {
         if (option) field = *option;

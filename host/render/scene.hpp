@@ -51,7 +51,7 @@ struct ClipPlane {
     double offset = 0; ///< [mm]
 };
 
-/// How to read a RAW file that does not say it by its name or a JSON beside it; the fields of VolumeReadOptions.
+/// How to read a file that does not say it by itself: RAW, and a TIFF's spacing. Fields as in VolumeReadOptions.
 struct RawLayout {
     std::optional<Int3> dims;
     std::string type;

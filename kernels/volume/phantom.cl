@@ -37,25 +37,21 @@ static inline vfloat part_distance(__global const PhantomPart* part, Vec3 p) {
     return (f - 1.0f) * f * f2 / length3(product(product(squared, q), inverse_radius));
 }
 
-// The distances to all bodies; only that to the skin when all lanes are 2 mm or more outside of it. `folded` is p with x mirrored to the
-// patient's left, `start` where this cell's lists of parts begin in `list`, by body.
-static inline void measure(__constant const PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,
-                           __global const uint* list, Vec3 p, Vec3 folded, vfloat* distance) {
-    for (int body = 0; body < CLVR_BODIES; ++body) {
-        Vec3 at = body == CLVR_VESSELS ? p : folded;
-        vfloat far = (vfloat)(params->far[body]), d = far;
-        for (uint i = start[body]; i < start[body + 1]; ++i) {
-            __global const PhantomPart* part = parts + list[i];
-            float4 center = part->center;
-            vmask near = v_lt(length3(offset3(at, center.x, center.y, center.z)), (vfloat)(center.w));
-            if (!v_any(near)) continue;
-            vfloat b = part_distance(part, at);
+// The distance to a body; `start` is where this cell's lists of parts begin in `list`, by body.
+static inline vfloat body_distance(int body, float far, __global const PhantomPart* parts, __global const uint* start,
+                                   __global const uint* list, Vec3 p) {
+    vfloat d = (vfloat)(far);
+    for (uint i = start[body]; i < start[body + 1]; ++i) {
+        __global const PhantomPart* part = parts + list[i];
+        float4 center = part->center;
+        vmask near = v_lt(length3(offset3(p, center.x, center.y, center.z)), (vfloat)(center.w));
+        if (v_any(near)) {
+            vfloat b = part_distance(part, p);
             vfloat joined = part->sign > 0 ? smooth_min(d, b, part->blend, part->quarter) : smooth_max(d, -b, part->blend, part->quarter);
-            d = v_select(near, v_clamp(joined, -far, far), d);
+            d = v_select(near, v_clamp(joined, (vfloat)(-far), (vfloat)(far)), d);
         }
-        distance[body] = d;
-        if (body == CLVR_SKIN && !v_any(v_lt(d, (vfloat)(2.0f)))) return;
     }
+    return d;
 }
 
 // A hash of 32 bits (C. Wellons, "lowbias32").
@@ -225,8 +221,12 @@ __kernel void phantom(__global short* out, __constant PhantomParams* params, __g
         p.z = fma(v_sincos_turns(fma(p.x, (vfloat)(0.005f), (vfloat)(0.1f)), &unused), (vfloat)(0.8f), p.z);
         Vec3 folded = vec3(sqrt(fma(p.x, p.x, (vfloat)(0.04f))), p.y, p.z);
         vfloat body[CLVR_BODIES];
-        measure(params, parts, start, list, p, folded, body);
-        vmask head = v_lt(body[CLVR_SKIN], (vfloat)(2.0f));
+        vmask head = -1;
+        for (int k = 0; k < CLVR_BODIES; ++k)
+            if (v_any(head)) {
+                body[k] = body_distance(k, params->far[k], parts, start, list, k == CLVR_VESSELS ? p : folded);
+                if (k == CLVR_SKIN) head = v_lt(body[k], (vfloat)(2.0f));
+            }
         if (v_any(head)) hu = v_select(head, tissue(params, body, p, folded), hu);
     }
 

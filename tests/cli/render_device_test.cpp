@@ -95,6 +95,17 @@ TEST_F(Render, SavedScenesGiveThePictureAgainBitForBit) {
     EXPECT_NE(hash("a.exr"), hash("c.exr"));
 }
 
+TEST_F(Render, SavedScenesKnowHowToReadARawFile) {
+    std::filesystem::copy_file(path("ball_24x20x16_uint8.raw"), path("unnamed.raw"));
+    ASSERT_EQ(run({"unnamed.raw", "--dims", "24x20x16", "--type", "uint8", "--spacing", "1,1,2", "--size", "20x16", "--spp", "1", "-o",
+                   "a.exr", "--save-scene", "scene.json"})
+                  .exit_code,
+              0);
+    const Outcome o = run({"scene.json", "-o", "b.exr"});
+    ASSERT_EQ(o.exit_code, 0) << o.err;
+    EXPECT_EQ(hash("a.exr"), hash("b.exr"));
+}
+
 TEST_F(Render, AScenesVolumeIsChecked) {
     ASSERT_EQ(run_ball({"-o", "a.png", "--save-scene", "scene.json"}).exit_code, 0);
     folder.write("ball_24x20x16_uint8.raw", std::string(24 * 20 * 16, 'x'));

@@ -25,8 +25,8 @@ inline Voxels blob(int side) {
 }
 
 /// A white furnace: whatever scatters, the picture is 1 everywhere.
-inline void expect_furnace(const Voxels& v, const Scene& s) {
-    const Frame f = render(v, s);
+inline void expect_furnace(const Voxels& v, const Scene& s, const EnvironmentTables& environment = {}) {
+    const Frame f = render(v, s, environment);
     for (const char* c : {"R", "G", "B"}) expect_mean(f, c, 1);
     for (double a : f.at("A")) ASSERT_EQ(a, 1);
 }

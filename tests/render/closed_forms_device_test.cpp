@@ -47,6 +47,30 @@ TEST(Absorption, OfARampIsItsIntegral) {
     for (float a : dvr.at("A")) ASSERT_NEAR(a, alpha, 5e-6);
 }
 
+/// DESIGN "Shading": p = 1 - exp(-4 s), s = |gradient| x smallest spacing / width of the visible interval. The dvr mode dims what faces
+/// away by it.
+TEST(SurfaceChance, FollowsTheGradient) {
+    Voxels v = volume_of<std::uint8_t>({40, 40, 40}, [](int, int, int z) { return 6 * z; });
+    v.geometry.spacing = {1.5, 1.5, 0.75};
+    Scene s = plain_scene(8, 1);
+    s.mode = Mode::dvr;
+    s.transfer->points = {{80, {1, 1, 1}, 0}, {80, {1, 1, 1}, 1}, {160, {1, 1, 1}, 1}, {160, {1, 1, 1}, 0}};
+    s.camera.orthographic = true;
+    s.camera.target = Double3{29, 29, 15};
+    const double tilt = 0.5; // the cosine between the way to the eye and the gradient
+    s.camera.eye = *s.camera.target + Double3{0, -std::sqrt(1 - tilt * tilt), tilt} * 60.0;
+    s.camera.height = 4;
+    const double steepness = 6 / 0.75 * 0.75 / 80, p = 1 - std::exp(-4 * steepness);
+    for (const auto& [shading, chance] : {std::pair(Shading::automatic, p), {Shading::gradient, 1.0}, {Shading::phase, 0.0}}) {
+        s.shading = shading;
+        const Frame f = render(v, s);
+        for (std::size_t i = 0; i < f.pixels(); ++i) {
+            ASSERT_GT(f.at("A")[i], 0.99);
+            ASSERT_NEAR(f.at("R")[i] / f.at("A")[i], 1 - 0.8 * chance * (1 - tilt), 1e-4);
+        }
+    }
+}
+
 TEST(Furnace, IsOneForEveryShading) {
     for (Shading shading : {Shading::phase, Shading::gradient, Shading::automatic})
         expect_furnace(blob(24), furnace_scene(shading, 0.4, 64));

@@ -8,6 +8,13 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
+constexpr int env_width = 24, env_height = 12;
+
+void light_by_image(Scene& s) {
+    s.light.environment = Light::Environment::image;
+    s.light.image = "sunny";
+}
+
 struct Furnace : ::testing::TestWithParam<std::tuple<Shading, double>> {};
 
 TEST_P(Furnace, IsOne) {
@@ -17,6 +24,20 @@ TEST_P(Furnace, IsOne) {
 INSTANTIATE_TEST_SUITE_P(Shadings, Furnace,
                          ::testing::Combine(::testing::Values(Shading::phase, Shading::gradient, Shading::automatic),
                                             ::testing::Values(0.0, 0.7, -0.5)));
+
+/// Cut open along a plane and by a box, in oblique voxels, under an image of one colour.
+TEST(ClippedFurnace, IsOne) {
+    Voxels v = blob(40);
+    v.geometry.origin = {-20, 5, 9};
+    v.geometry.spacing = {0.6, 1.1, 0.9};
+    v.geometry.direction.row = {{{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}}};
+    Scene s = furnace_scene(Shading::automatic, 0.3, 256);
+    const Double3 facing{0.4, -1, 0.6};
+    s.clip_plane = ClipPlane{facing, inner(facing, v.geometry.to_world({20, 16, 18}))};
+    s.clip_box = {0, 0.1, 0.2, 0.6, 1, 1};
+    light_by_image(s);
+    expect_furnace(v, s, environment_tables(env_width, env_height, std::vector<float>(3 * env_width * env_height, 1.0f), 1));
+}
 
 /// Paths of a thousand scatterings, which the roulette of long white paths ends.
 TEST(DenseFurnace, IsOneBehindFiftyMeanFreePaths) {
@@ -37,8 +58,6 @@ TEST_P(MeanCosine, IsG) {
     box.expect(box.scattered_everywhere([&](const Double3& towards) { return a + b * towards[2]; }));
 }
 INSTANTIATE_TEST_SUITE_P(G, MeanCosine, ::testing::Values(-0.8, -0.3, 0.0, 0.5, 0.9));
-
-constexpr int env_width = 24, env_height = 12;
 
 /// Noise between 0.2 and 1.8, two small suns and a black patch; the brightest texel at most 50 times the mean.
 std::vector<float> sunny_image() {
@@ -61,11 +80,6 @@ EnvironmentTables uniformly_sampled(const EnvironmentTables& image) {
     for (std::size_t t = 0; t < image.texel.size(); ++t) e.texel[t] = {image.texel[t].x, image.texel[t].y, image.texel[t].z, e.texel[t].w};
     e.mean_luminance = image.mean_luminance;
     return e;
-}
-
-void light_by_image(Scene& s) {
-    s.light.environment = Light::Environment::image;
-    s.light.image = "sunny";
 }
 
 TEST(EnvironmentImage, SingleScatteringIsTheSumOverItsTexels) {
@@ -121,7 +135,7 @@ TEST(EnvironmentImage, ImportanceSamplingAgreesWithUniformSampling) {
 
 /// The camera ray's opacity is what the feature march integrates.
 TEST(Alpha, At4096SamplesIsTheMarchedOpacity) {
-    const Voxels v = volume_of<std::uint8_t>({48, 48, 48}, [](int x, int y, int z) {
+    const Voxels v = volume_of<std::uint8_t>({100, 90, 110}, [](int x, int y, int z) {
         return 127 + 60 * std::sin(0.31 * x) * std::cos(0.23 * y) + 60 * std::sin(0.27 * z + 0.1 * x);
     });
     Scene s = plain_scene(64, 4096);

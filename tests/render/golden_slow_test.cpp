@@ -1,4 +1,5 @@
 // The same bits, in the variants that take long to compile.
+#include "runtime/embedded.hpp"
 #include "tests/render/golden.hpp"
 
 namespace clvr::testing {
@@ -12,6 +13,23 @@ TEST(Golden, FourAndEightPoolsGiveTheSameBits) {
 TEST(Golden, EveryModeGivesTheSameBitsAtEveryWidth) {
     for (int width : {1, 4, 8, 16})
         for (const auto& [name, hash] : golden_hashes) expect_golden(name, {{"packet", width}, {"brick_log2", 4}});
+}
+
+/// Compilers may contract a * b + c where they are not told otherwise, and some do where they are: no bit of ours may depend on it.
+TEST(Golden, ContractionChangesNoBit) {
+    const TemporaryFolder folder;
+    int allowed = 0;
+    for (const auto& [path, text] : embedded_kernels()) {
+        std::string contracted = text;
+        const std::string off = "FP_CONTRACT OFF";
+        if (path.rfind("probe/", 0) != 0) // the trust probe finds out what the compiler does
+            for (std::size_t at; (at = contracted.find(off)) != std::string::npos; ++allowed)
+                contracted.replace(at, off.size(), "FP_CONTRACT ON");
+        folder.write(path, contracted);
+    }
+    ASSERT_GT(allowed, 1);
+    const ScopedKernels kernels(folder);
+    for (const auto& [name, hash] : golden_hashes) expect_golden(name);
 }
 
 } // namespace
