@@ -1,6 +1,6 @@
 // Frames to and from files.
 #pragma once
-#include "host/render/frame.hpp"
+#include "host/frame/frame.hpp"
 
 #include <array>
 #include <string>

@@ -1,6 +1,6 @@
 // Frames and folders for the tests of picture files.
 #pragma once
-#include "host/render/frame.hpp"
+#include "host/frame/frame.hpp"
 #include "runtime/error.hpp"
 
 #include <gtest/gtest.h>

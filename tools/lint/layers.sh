@@ -18,13 +18,18 @@ nowhere_but() { complain "only in $1" "$(grep -rnE "$2" runtime host | grep -vE 
 
 only runtime runtime/ kernels/shared/
 only host/volume runtime/ host/volume/ kernels/shared/
-only host/render runtime/ host/volume/ host/render/ kernels/shared/
-only host/io runtime/ host/volume/ host/render/ host/io/ kernels/shared/
+only host/frame runtime/ host/frame/
+only host/render runtime/ host/volume/ host/frame/ host/render/ kernels/shared/
+only host/denoise runtime/ host/frame/ host/denoise/ kernels/shared/
+only host/io runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/io/ kernels/shared/
+only host/train runtime/ host/frame/ host/denoise/ host/io/ host/train/ kernels/shared/
 only host/cli runtime/ host/ kernels/shared/
 only kernels/shared shared/
 only kernels/lib shared/ lib/
 only kernels/render shared/ lib/
 only kernels/volume shared/ lib/
+only kernels/denoise shared/ lib/
+only kernels/train shared/ lib/
 only kernels/probe shared/ lib/ trust_operations.h
 
 nowhere_but 'runtime/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'

@@ -1,4 +1,4 @@
-#include "host/render/frame.hpp"
+#include "host/frame/frame.hpp"
 #include "runtime/error.hpp"
 
 #include <cstdint>

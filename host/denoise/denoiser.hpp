@@ -1,0 +1,39 @@
+// Frames through the neural bilateral grid.
+#pragma once
+#include "host/denoise/model.hpp"
+#include "host/frame/frame.hpp"
+#include "runtime/device.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// What `clvr denoise --show` writes beside the result: 0..1 planes (guides, weights) and images (levels, premultiplied radiance).
+struct DenoiserView {
+    bool guides = false, weights = false, levels = false;
+};
+
+class Denoiser {
+public:
+    /// Builds the kernels and uploads the weights. Throws Error.
+    Denoiser(const Device& device, const Model& model);
+    ~Denoiser();
+
+    /// The frame with R G B replaced by the denoised beauty (not below 0) and the input's beauty as noisy.R G B; other channels and
+    /// attributes stay, "clvr.denoised" is added. A background (background.R G B) is taken off before and laid under the result again.
+    /// Non-finite values are repaired and counted in repaired(). With `show`: guide.1 ..., weight.1 ..., level1.R ... as further channels.
+    /// Any size of picture: what the device does not hold at once goes through in tiles that overlap, with the same bits. Throws
+    /// Error{input} naming a channel of the model that the frame lacks (and what it has), Error{memory}.
+    Frame denoise(const Frame& frame, const DenoiserView& show = {});
+
+    /// Values of the last frame that were not finite.
+    std::size_t repaired() const;
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+} // namespace clvr

@@ -1,0 +1,54 @@
+// The network of the neural bilateral grid, with all that a model file says of its use.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// GuideNet (Meng et al. 2020; `SPEC.md` sections 2 to 7): conv kernel x kernel (C_in -> hidden), leaky ReLU 0.2, conv (hidden ->
+/// outputs()), sigmoid: a guide per level, then a blending weight per level but the last. Tensors are OIHW, row-major.
+struct Model {
+    /// Sampling factors of a bilateral grid: pixels per cell (both ways), codes of the guide's 256 per cell.
+    struct Level {
+        int pixels = 4, codes = 4;
+    };
+
+    /// Input channels in order, by their names in frames (DESIGN.md "Frames"). R, G, B (premultiplied beauty) are tone mapped, normal.*
+    /// becomes (n+1)/2, "noise" is (samples per pixel)^(-1/2), the rest is taken as it is.
+    std::vector<std::string> channels;
+    int hidden = 20;
+    int kernel = 5; ///< odd
+    std::vector<Level> levels{{4, 4}, {8, 8}, {16, 16}};
+
+    // Preprocessing beyond SPEC.md; absent from a file means these values.
+    bool exposure = false;                    ///< radiance scaled by 0.18 / exp2(mean log2 luminance), clamped at 32 (DESIGN.md "Denoiser")
+    float albedo_floor = 0x1p-20f;            ///< radiance is divided and remultiplied by max(albedo, this)
+    bool opacity_weight = false;              ///< a pixel counts in the splat as much as it is opaque, and the output is times opacity
+    std::map<std::string, std::string> notes; ///< further metadata ("clvr.training", ...): how it was made; kept when the file is copied
+
+    std::vector<float> conv1_weight; ///< [hidden, channels, kernel, kernel]
+    std::vector<float> conv1_bias;   ///< [hidden]
+    std::vector<float> conv2_weight; ///< [outputs(), hidden, kernel, kernel]
+    std::vector<float> conv2_bias;   ///< [outputs()]
+
+    int outputs() const { return 2 * static_cast<int>(levels.size()) - 1; }
+    std::size_t parameters() const { return conv1_weight.size() + conv1_bias.size() + conv2_weight.size() + conv2_bias.size(); }
+    /// All parameters in the order conv1.weight, conv1.bias, conv2.weight, conv2.bias.
+    std::vector<float> flat() const;
+    /// Takes what flat() gave. The sizes must agree.
+    void set_flat(const std::vector<float>& parameters);
+};
+
+/// Channels of a file with tensors alone and C_in = 10: R G B, albedo.R G B, normal.X Y Z, depth.Z.
+std::vector<std::string> reference_channels();
+
+/// Sizes the tensors and draws them as the reference does: Glorot uniform kernels, zero biases. The same bits for a seed on every machine.
+void initialise(Model& model, std::uint64_t seed);
+
+/// Throws Error{input} naming the first thing that is wrong: no channels, unknown or doubled ones, sizes out of range (channels 1..64,
+/// hidden 1..256, kernel odd 1..15, levels 1..8 with pixels 1..64 and codes 4..256), tensors of other sizes, non-finite weights.
+void validate(const Model& model);
+
+} // namespace clvr

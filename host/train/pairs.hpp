@@ -1,0 +1,23 @@
+// Folders of training pairs: noisy frames of views and their references.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// A view: one or more independent noisy frames and a reference (empty: none was made; another noisy frame serves as target).
+struct PairView {
+    std::vector<std::string> noisy; ///< EXR paths
+    std::string reference;
+};
+
+struct PairsFolder {
+    std::string split; ///< "train" or "test"
+    std::vector<PairView> views;
+};
+
+/// Reads DIR/pairs.json and checks that all its frames are there (not their pixels). Throws Error{input}: no such file, not complete,
+/// empty.
+PairsFolder read_pairs(const std::string& folder);
+
+} // namespace clvr
