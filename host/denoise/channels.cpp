@@ -1,0 +1,127 @@
+#include "host/denoise/channels.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace clvr {
+
+namespace {
+
+bool is_radiance(const std::string& name) { return name == "R" || name == "G" || name == "B"; }
+const std::string noise_channel = "noise"; // (samples per pixel)^(-1/2), from the frame's attribute
+
+float noise_level(const Frame& frame) {
+    const auto spp = frame.attributes.find("clvr.spp");
+    return static_cast<float>(1 / std::sqrt(std::max(1.0, std::atof(spp->second.c_str()))));
+}
+
+} // namespace
+
+ChannelPlan::ChannelPlan(const Model& model, bool with_target)
+    : exposure_(model.exposure), weighted_(model.opacity_weight), with_target_(with_target), albedo_floor_(model.albedo_floor) {
+    const auto has = [&](const char* name) {
+        return std::find(model.channels.begin(), model.channels.end(), name) != model.channels.end();
+    };
+    demodulate_ = has("albedo.R") && has("albedo.G") && has("albedo.B");
+    planes_ = {"R", "G", "B"};
+    if (demodulate_) planes_.insert(planes_.end(), {"albedo.R", "albedo.G", "albedo.B"});
+    const auto add = [&](const std::string& name) {
+        if (plane(name) < 0) planes_.push_back(name);
+    };
+    if (weighted_) add("A");
+    for (const auto& name : model.channels) {
+        add(name);
+        const auto kind = is_radiance(name)               ? shared::CLVR_CHANNEL_RADIANCE
+                          : name.rfind("normal.", 0) == 0 ? shared::CLVR_CHANNEL_NORMAL
+                                                          : shared::CLVR_CHANNEL_PLAIN;
+        channels_.push_back({plane(name), kind});
+    }
+    if (with_target) planes_.insert(planes_.end(), {"target.R", "target.G", "target.B"});
+}
+
+int ChannelPlan::plane(const std::string& name) const {
+    const auto at = std::find(planes_.begin(), planes_.end(), name);
+    return at == planes_.end() ? -1 : static_cast<int>(at - planes_.begin());
+}
+
+shared::SourceParams ChannelPlan::params(double exposure) const {
+    constexpr float ceiling = 32; // DESIGN.md "Denoiser"
+    shared::SourceParams p{};
+    p.beauty = plane("R");
+    p.albedo = demodulate_ ? plane("albedo.R") : -1;
+    p.opacity = weighted_ ? plane("A") : -1;
+    p.target = plane("target.R");
+    p.channels = static_cast<int>(channels_.size());
+    p.exposure = exposure_ ? static_cast<float>(exposure) : 1.0f;
+    p.ceiling = exposure_ ? ceiling : 0x1p126f;
+    p.albedo_floor = albedo_floor_;
+    return p;
+}
+
+void ChannelPlan::check(const Frame& frame) const {
+    for (const auto& name : planes_) {
+        if (name.rfind("target.", 0) == 0) continue;
+        const bool there = name == noise_channel ? frame.attributes.count("clvr.spp") != 0 : frame.has(name);
+        if (there) continue;
+        std::vector<std::string> has;
+        for (const auto& [channel, values] : frame.channels) has.push_back(channel);
+        throw Error(ErrorKind::input,
+                    fmt::format("lacks {} that the model reads; it has {}",
+                                name == noise_channel ? "the attribute clvr.spp" : "channel " + name, fmt::join(has, " ")));
+    }
+}
+
+float beauty_without_background(const Frame& frame, const char* colour, std::size_t i) {
+    const float beauty = frame.at(colour)[i];
+    const auto background = frame.channels.find(std::string("background.") + colour);
+    if (background == frame.channels.end() || !frame.has("A")) return beauty;
+    return beauty - (1 - frame.at("A")[i]) * background->second[i];
+}
+
+std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const Region& region, std::vector<float>& planes) const {
+    std::size_t repaired = 0;
+    planes.reserve(planes.size() + planes_.size() * region.pixels());
+    for (const auto& name : planes_) {
+        const bool of_target = name.rfind("target.", 0) == 0;
+        const Frame& from = of_target ? *target : frame;
+        const std::string colour = of_target ? name.substr(7) : name;
+        const float noise = name == noise_channel ? noise_level(frame) : 0;
+        for (int y = region.y; y < region.y + region.height; ++y)
+            for (int x = region.x; x < region.x + region.width; ++x) {
+                const std::size_t i = static_cast<std::size_t>(y) * frame.width + x;
+                float v = name == noise_channel ? noise
+                          : is_radiance(colour) ? beauty_without_background(from, colour.c_str(), i)
+                                                : from.at(colour)[i];
+                if (!std::isfinite(v)) v = 0, ++repaired;
+                planes.push_back(v);
+            }
+    }
+    return repaired;
+}
+
+double exposure_of(const Frame& frame) {
+    constexpr int block = 16;
+    double sum = 0;
+    int blocks = 0;
+    for (int y0 = 0; y0 < frame.height; y0 += block)
+        for (int x0 = 0; x0 < frame.width; x0 += block) {
+            double luminance = 0, opacity = 0;
+            int n = 0;
+            for (int y = y0; y < std::min(y0 + block, frame.height); ++y)
+                for (int x = x0; x < std::min(x0 + block, frame.width); ++x, ++n) {
+                    const std::size_t i = static_cast<std::size_t>(y) * frame.width + x;
+                    const double l = 0.2126 * beauty_without_background(frame, "R", i) + 0.7152 * beauty_without_background(frame, "G", i) +
+                                     0.0722 * beauty_without_background(frame, "B", i);
+                    if (std::isfinite(l)) luminance += std::max(l, 0.0);
+                    const double a = frame.has("A") ? frame.at("A")[i] : 1;
+                    if (std::isfinite(a)) opacity += a;
+                }
+            if (opacity > n / 64.0 && luminance > 0) sum += std::log2(luminance / n), ++blocks;
+        }
+    return blocks == 0 ? 1 : 0.18 / std::exp2(sum / blocks);
+}
+
+} // namespace clvr

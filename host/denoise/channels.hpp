@@ -1,0 +1,54 @@
+// From a frame's named channels to the planes that the device reads.
+#pragma once
+#include "host/denoise/model.hpp"
+#include "host/frame/frame.hpp"
+#include "kernels/shared/denoise_params.h"
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// Part of a picture [pixels].
+struct Region {
+    int x = 0, y = 0, width = 0, height = 0;
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
+};
+
+/// Which planes a model needs of a frame, and what becomes of them.
+class ChannelPlan {
+public:
+    /// `with_target`: three planes more, for a target's R G B.
+    ChannelPlan(const Model& model, bool with_target);
+
+    /// Frame channels in the order of the planes; the target's are "target.R" ...
+    const std::vector<std::string>& planes() const { return planes_; }
+    /// (plane, ChannelKind) per channel of the network's input, as kernels/denoise/assemble.cl reads it.
+    const std::vector<std::array<std::int32_t, 2>>& channels() const { return channels_; }
+    /// The model's switches and plane numbers; `exposure` from exposure_of.
+    shared::SourceParams params(double exposure) const;
+
+    /// Throws Error{input} naming the first channel that is missing, and what the frame has.
+    void check(const Frame& frame) const;
+    /// Appends the planes of a region, beauty without background, to `planes`; returns how many values were not finite and became 0.
+    /// `target`: the frame of the target planes, or null.
+    std::size_t gather(const Frame& frame, const Frame* target, const Region& region, std::vector<float>& planes) const;
+
+private:
+    std::vector<std::string> planes_;
+    std::vector<std::array<std::int32_t, 2>> channels_;
+    bool exposure_, demodulate_, weighted_, with_target_;
+    float albedo_floor_;
+
+    int plane(const std::string& name) const; // its number, -1: not among them
+};
+
+/// DESIGN.md "Denoiser": 0.18 / exp2(mean log2 luminance), the mean over blocks of 16x16 pixels whose mean opacity is above 1/64 and whose
+/// luminance is above 0; 1 where there is none. Reads the whole frame: R G B less background, A.
+double exposure_of(const Frame& frame);
+
+/// The frame's beauty at pixel i less the background seen through it.
+float beauty_without_background(const Frame& frame, const char* colour, std::size_t i);
+
+} // namespace clvr

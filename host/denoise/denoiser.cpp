@@ -1,0 +1,155 @@
+#include "host/denoise/denoiser.hpp"
+#include "host/denoise/neural_grid.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <numeric>
+
+namespace clvr {
+
+namespace {
+
+constexpr const char* colours[] = {"R", "G", "B"};
+
+/// Tiles begin at multiples of `align`, so that their grid cells are the picture's, and reach `halo` pixels beyond what they give.
+struct Tiling {
+    int align = 1, halo = 0;
+
+    explicit Tiling(const Model& model) {
+        int largest = 1;
+        for (const auto& level : model.levels) {
+            align = std::lcm(align, level.pixels);
+            largest = std::max(largest, level.pixels);
+        }
+        // A pixel reads cells whose centres are less than a cell away, and those the guides of as many pixels further; a guide reads the
+        // taps of two convolutions.
+        halo = 2 * largest + 2 * (model.kernel / 2);
+    }
+
+    /// What a tile that gives `inner` must hold of a picture.
+    Region outer(const Region& inner, int width, int height) const {
+        const auto low = [&](int at) { return std::max(0, at - halo) / align * align; };
+        Region r{low(inner.x), low(inner.y)};
+        r.width = std::min(width, inner.x + inner.width + halo) - r.x;
+        r.height = std::min(height, inner.y + inner.height + halo) - r.y;
+        return r;
+    }
+};
+
+} // namespace
+
+struct Denoiser::State {
+    Device device;
+    Model model;
+    ChannelPlan plan;
+    Tiling tiling;
+    Buffer parameters;
+    std::unique_ptr<NeuralGrid> grid; // of the last tile's size, kept for the next frame
+    BatchShape shape;
+    std::size_t repaired = 0;
+
+    State(const Device& d, const Model& m) : device(d), model(m), plan(m, false), tiling(m) {}
+
+    std::size_t tile_bytes(const Region& outer, bool show) const {
+        return NeuralGrid::bytes(device, model, {outer.width, outer.height, 1, show}) + plan.planes().size() * outer.pixels() * 4;
+    }
+
+    /// Rows and columns of a tile's inner part: the whole picture where it fits in the budget, else whole rows, then parts of rows.
+    Region tile(int width, int height, bool show) const {
+        // 1080p stays below 400 MB in two tiles, which costs 7 % more pixels; larger tiles are not faster.
+        const std::size_t mib = 1 << 20, tunable = static_cast<std::size_t>(device.tunable("denoise_mib", 380)) * mib;
+        const std::size_t kept = grid ? tile_bytes({0, 0, shape.width, shape.height}, shape.show) : 0;
+        const std::size_t budget = std::min(tunable, (device.free_bytes() + kept) / 8 * 7);
+        Region t{0, 0, width, height};
+        const auto fits = [&] {
+            const Region outer{0, 0, std::min(width, t.width + 2 * tiling.halo + tiling.align),
+                               std::min(height, t.height + 2 * tiling.halo + tiling.align)};
+            return tile_bytes(outer, show) <= budget &&
+                   std::size_t{16} * NeuralGrid::params_of(device, model, outer.width, outer.height).cells <= device.max_alloc_bytes() &&
+                   plan.planes().size() * outer.pixels() * 4 <= device.max_alloc_bytes();
+        };
+        for (int parts = 2; !fits() && t.height > tiling.align; ++parts) t.height = (height + parts - 1) / parts;
+        for (int parts = 2; !fits() && t.width > tiling.align; ++parts) t.width = (width + parts - 1) / parts;
+        return t;
+    }
+
+    /// A NeuralGrid of the size; the last one's memory is given back first.
+    NeuralGrid& grid_of(const BatchShape& wanted) {
+        if (!grid || wanted.width != shape.width || wanted.height != shape.height || wanted.show != shape.show) {
+            grid.reset();
+            grid = std::make_unique<NeuralGrid>(device, model, wanted);
+            grid->set_parameters(parameters);
+            shape = wanted;
+        }
+        return *grid;
+    }
+
+    /// Denoises a tile: copies what lies in `inner` to the frame's channels named so, one per plane of NeuralGrid::result and then of
+    /// outputs().
+    void denoise_tile(const Frame& frame, const Region& inner, const shared::SourceParams& params, bool show,
+                      const std::vector<std::vector<float>*>& results, const std::vector<std::vector<float>*>& outputs) {
+        const Region outer = tiling.outer(inner, frame.width, frame.height);
+        std::vector<float> planes;
+        repaired += plan.gather(frame, nullptr, outer, planes);
+        NeuralGrid& g = grid_of({outer.width, outer.height, 1, show});
+        const Buffer source = device.upload(planes, "frame channels");
+        g.assemble(source, outer.width, outer.height, params, 0, 0, 0, 0);
+        g.forward(1);
+        const auto copy = [&](const Buffer& from, int channels, int channel, std::vector<float>& to) {
+            const std::vector<float> plane = g.download(from, channels, 0, channel);
+            for (int y = 0; y < inner.height; ++y) {
+                const auto row = plane.begin() + static_cast<std::ptrdiff_t>(inner.y + y - outer.y) * outer.width + inner.x - outer.x;
+                std::copy(row, row + inner.width, to.begin() + static_cast<std::ptrdiff_t>(inner.y + y) * frame.width + inner.x);
+            }
+        };
+        for (std::size_t c = 0; c < results.size(); ++c)
+            copy(g.result(), static_cast<int>(results.size()), static_cast<int>(c), *results[c]);
+        for (std::size_t c = 0; c < outputs.size(); ++c)
+            if (outputs[c]) copy(g.outputs(), static_cast<int>(outputs.size()), static_cast<int>(c), *outputs[c]);
+    }
+};
+
+Denoiser::Denoiser(const Device& device, const Model& model) : state_(std::make_unique<State>(device, model)) {
+    validate(model);
+    state_->parameters = state_->device.upload(model.flat(), "model");
+}
+Denoiser::~Denoiser() = default;
+
+std::size_t Denoiser::repaired() const { return state_->repaired; }
+
+Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
+    State& s = *state_;
+    s.plan.check(frame);
+    s.repaired = 0;
+    Frame done = frame;
+    const int levels = static_cast<int>(s.model.levels.size());
+    for (const char* c : colours) done.channels[std::string("noisy.") + c] = frame.at(c);
+    std::vector<std::vector<float>*> results, outputs;
+    for (const char* c : colours) results.push_back(&done.channel(c));
+    for (int l = 1; view.levels && l <= levels; ++l)
+        for (const char* c : colours) results.push_back(&done.channel(fmt::format("level{}.{}", l, c)));
+    for (int l = 1; l <= levels; ++l) outputs.push_back(view.guides ? &done.channel(fmt::format("guide.{}", l)) : nullptr);
+    for (int l = 1; l < levels; ++l) outputs.push_back(view.weights ? &done.channel(fmt::format("weight.{}", l)) : nullptr);
+
+    const shared::SourceParams params = s.plan.params(s.model.exposure ? exposure_of(frame) : 1);
+    const Region tile = s.tile(frame.width, frame.height, view.levels);
+    for (int y = 0; y < frame.height; y += tile.height)
+        for (int x = 0; x < frame.width; x += tile.width)
+            s.denoise_tile(frame, {x, y, std::min(tile.width, frame.width - x), std::min(tile.height, frame.height - y)}, params,
+                           view.levels, results, outputs);
+
+    const std::vector<float>* opacity = frame.has("opacity.A") ? &frame.at("opacity.A") : frame.has("A") ? &frame.at("A") : nullptr;
+    for (std::size_t c = 0; c < results.size(); ++c) {
+        const auto background = frame.channels.find(std::string("background.") + colours[c % 3]);
+        std::vector<float>& to = *results[c];
+        for (std::size_t i = 0; i < to.size(); ++i) {
+            to[i] = std::max(to[i] / params.exposure, 0.0f);
+            if (c < 3 && background != frame.channels.end() && opacity) to[i] += (1 - (*opacity)[i]) * background->second[i];
+        }
+    }
+    done.attributes["clvr.denoised"] = "1";
+    return done;
+}
+
+} // namespace clvr

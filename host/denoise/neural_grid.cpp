@@ -1,0 +1,209 @@
+#include "host/denoise/neural_grid.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <fmt/format.h>
+
+namespace clvr {
+
+namespace {
+
+bool is_cpu(const Device& device) { return device.facts().type == DeviceType::cpu; }
+int conv_width(const Device& device) { return device.tunable("conv_width", is_cpu(device) ? 16 : 1); }
+int conv_vectors(const Device& device) { return device.tunable("conv_vectors", 4); }
+Range conv_group(const Device& device) {
+    const bool cpu = is_cpu(device);
+    const auto x = static_cast<std::size_t>(device.tunable("conv_group_x", conv_width(device) == 1 ? 32 : 1));
+    return {x, static_cast<std::size_t>(device.tunable("conv_group_y", cpu ? 16 : 4))};
+}
+
+/// Channels computed at once: the greatest divisor of `channels` up to `most`, so that none is computed in vain.
+int divisor(int channels, int most) {
+    int d = std::min(channels, most);
+    while (channels % d != 0) --d;
+    return d;
+}
+
+int round_up(int n, int multiple) { return (n + multiple - 1) / multiple * multiple; }
+
+} // namespace
+
+int Convolution::row_granularity(const Device& device) {
+    // Also a multiple of 16, the lanes of the weight gradients.
+    return std::max(16, conv_width(device) * conv_vectors(device) * static_cast<int>(conv_group(device).x));
+}
+
+Convolution::Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
+                         bool mirrored)
+    : group_(conv_group(device)), in_(in), out_(out), size_(kernel) {
+    const int block = divisor(out, device.tunable("conv_block", 5)), width = conv_width(device), vectors = conv_vectors(device);
+    step_ = width * vectors;
+    kernel_ = device.kernel(stage, {{"CLVR_IN", std::to_string(in)},
+                                    {"CLVR_OUT", std::to_string(out)},
+                                    {"CLVR_KERNEL", std::to_string(kernel)},
+                                    {"CLVR_WIDTH", std::to_string(width)},
+                                    {"CLVR_VECTORS", std::to_string(vectors)},
+                                    {"CLVR_BLOCK", std::to_string(block)}});
+    pack_ = device.kernel("denoise/pack_weights");
+    const std::size_t taps = static_cast<std::size_t>(kernel) * kernel;
+    std::vector<std::int32_t> from;
+    for (int b = 0; b < out; b += block)
+        for (int i = 0; i < in; ++i)
+            for (std::size_t tap = 0; tap < taps; ++tap)
+                for (int o = b; o < b + block; ++o) {
+                    const std::size_t row = mirrored ? static_cast<std::size_t>(i) * out + o : static_cast<std::size_t>(o) * in + i;
+                    from.push_back(static_cast<std::int32_t>(first + row * taps + (mirrored ? taps - 1 - tap : tap)));
+                }
+    std::vector<std::int32_t> bias_from;
+    for (int o = 0; o < out; ++o) bias_from.push_back(mirrored ? -1 : static_cast<std::int32_t>(first_bias + o));
+    weights_from_ = device.upload(from, "weight order");
+    bias_from_ = device.upload(bias_from, "bias order");
+    weights_ = device.buffer(from.size() * 4, "weights");
+    bias_ = device.buffer(bias_from.size() * 4, "biases");
+}
+
+void Convolution::set_parameters(Device& device, const Buffer& parameters) {
+    for (auto [from, to] : {std::pair(&weights_from_, &weights_), {&bias_from_, &bias_}}) {
+        const auto n = static_cast<cl_uint>(to->bytes() / 4);
+        device.launch(pack_, {n}, pack_.group(64), {n * 12.0, 0}, parameters, *from, *to, n);
+    }
+}
+
+Range Convolution::range(const shared::DenoiseParams& shape, int images) const {
+    return {static_cast<std::size_t>((shape.width + step_ - 1) / step_), static_cast<std::size_t>(shape.height),
+            static_cast<std::size_t>(images)};
+}
+
+Work Convolution::work(const shared::DenoiseParams& shape, int images) const {
+    const double pixels = static_cast<double>(shape.width) * shape.height * images;
+    return {pixels * 4 * (in_ + out_), pixels * 2 * in_ * out_ * size_ * size_};
+}
+
+shared::DenoiseParams NeuralGrid::params_of(const Device& device, const Model& model, int width, int height) {
+    shared::DenoiseParams p{};
+    p.width = width;
+    p.height = height;
+    p.pad = model.kernel / 2;
+    p.row = round_up(width, Convolution::row_granularity(device)) + 2 * p.pad;
+    p.plane = p.row * (height + 2 * p.pad);
+    p.levels = static_cast<int>(model.levels.size());
+    p.guide_scale = 255;
+    for (std::size_t l = 0; l < model.levels.size(); ++l) {
+        const auto [pixels, codes] = model.levels[l];
+        shared::GridLevel& level = p.level[l];
+        level.offset = p.cells;
+        level.pixels = pixels;
+        level.codes = codes;
+        level.rows = (height + pixels - 1) / pixels;
+        level.columns = (width + pixels - 1) / pixels;
+        level.depth = (256 + codes - 1) / codes;
+        level.inverse_codes = static_cast<float>(1.0 / codes);
+        level.slope = static_cast<float>(255.0 / codes);
+        p.cells += static_cast<std::uint32_t>(level.rows) * level.columns * level.depth;
+    }
+    return p;
+}
+
+std::size_t NeuralGrid::bytes(const Device& device, const Model& model, const BatchShape& b) {
+    const shared::DenoiseParams p = params_of(device, model, b.width, b.height);
+    const std::size_t planes =
+        model.channels.size() + model.hidden + model.outputs() + 3 + (b.show ? 3 * p.levels : 0) + (b.target ? 3 : 0);
+    return b.images * (planes * p.plane * 4 + std::size_t{32} * b.width * b.height + std::size_t{16} * p.cells);
+}
+
+NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShape& shape)
+    : device_(device), levels_(static_cast<int>(model.levels.size())), channels_(static_cast<int>(model.channels.size())), batch_(shape),
+      params_(params_of(device, model, shape.width, shape.height)) {
+    assemble_ = device_.kernel("denoise/assemble", {{"CLVR_WIDTH", "1"}});
+    slice_ = device_.kernel("denoise/slice", {{"CLVR_SHOW", shape.show ? "1" : "0"}});
+    for (int l = 0; l < levels_; ++l) {
+        bins_.push_back(is_cpu(device_) ? params_.level[l].depth : 1);
+        bins_.back() = std::min(device_.tunable("splat_bins", bins_.back()), params_.level[l].depth);
+        for (auto [kernels, sums] : {std::pair(&splat_, "0"), {&sum_, "1"}})
+            kernels->push_back(device_.kernel("denoise/splat", {{"CLVR_BINS", std::to_string(bins_.back())}, {"CLVR_SUMS", sums}}));
+    }
+    const std::size_t conv1 = model.conv1_weight.size(), bias1 = model.conv1_bias.size(), conv2 = model.conv2_weight.size();
+    to_hidden_ = Convolution(device_, "denoise/hidden", channels_, model.hidden, model.kernel, 0, conv1, false);
+    to_outputs_ =
+        Convolution(device_, "denoise/guides", model.hidden, model.outputs(), model.kernel, conv1 + bias1, conv1 + bias1 + conv2, false);
+
+    params_buffer_ = device_.upload(std::vector<shared::DenoiseParams>{params_}, "denoiser settings");
+    channel_list_ = device_.upload(ChannelPlan(model, shape.target).channels(), "channel list");
+    source_params_ = device_.buffer(sizeof source_, "channel settings");
+    const int results = 3 + (shape.show ? 3 * levels_ : 0);
+    struct {
+        Buffer& buffer;
+        int channels;
+        const char* label;
+    } planes[] = {{input_, channels_, "network input"},
+                  {hidden_, model.hidden, "hidden layer"},
+                  {outputs_, model.outputs(), "guides"},
+                  {result_, results, "denoised picture"},
+                  {target_, shape.target ? 3 : 0, "target"}};
+    for (auto& [buffer, channels, label] : planes) {
+        buffer = device_.buffer(std::max<std::size_t>(plane_floats(channels) * 4, 16), label);
+        device_.fill(buffer, 0);
+    }
+    splatted_ = device_.buffer(pixels() * 16, "colours to splat");
+    remodulation_ = device_.buffer(pixels() * 16, "albedo");
+    cells_ = device_.buffer(std::size_t{16} * params_.cells * shape.images, "bilateral grids");
+}
+
+Range NeuralGrid::pixel_group() const { return is_cpu(device_) ? Range{64, 1} : Range{32, 4}; }
+
+void NeuralGrid::set_parameters(const Buffer& parameters) {
+    to_hidden_.set_parameters(device_, parameters);
+    to_outputs_.set_parameters(device_, parameters);
+}
+
+void NeuralGrid::assemble(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
+                          int orientation, int n) {
+    if (std::memcmp(&source_, &params, sizeof params) != 0) {
+        source_ = params;
+        device_.write(source_params_, &source_, sizeof source_);
+    }
+    const shared::int4 from{x, y, orientation, n};
+    const std::array<std::int32_t, 2> extent{source_width, source_height};
+    device_.launch(assemble_, {static_cast<std::size_t>(params_.width), static_cast<std::size_t>(params_.height)}, pixel_group(),
+                   {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, source_params_, source,
+                   extent, from, channel_list_, input_, splatted_, remodulation_, target_);
+}
+
+void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {
+    const shared::GridLevel& l = params_.level[level];
+    const int runs = (l.depth + bins_[level] - 1) / bins_[level];
+    const Range group = is_cpu(device_) ? Range{1} : Range{8, 4};
+    const double count = static_cast<double>(params_.width) * params_.height * images;
+    device_.launch(sums ? sum_[level] : splat_[level],
+                   {static_cast<std::size_t>(l.columns), static_cast<std::size_t>(l.rows), static_cast<std::size_t>(images) * runs}, group,
+                   {count * 20 + 16.0 * l.rows * l.columns * l.depth * images, 0}, params_buffer_, level, 2 * levels_ - 1, outputs_, pixels, first_image,
+                   cells);
+}
+
+void NeuralGrid::slice(int images) {
+    device_.launch(slice_,
+                   {static_cast<std::size_t>(params_.width), static_cast<std::size_t>(params_.height), static_cast<std::size_t>(images)},
+                   pixel_group(), {static_cast<double>(params_.width) * params_.height * images * (48 + 128 * levels_), 0}, params_buffer_,
+                   outputs_, cells_, remodulation_, result_);
+}
+
+void NeuralGrid::forward(int images) {
+    to_hidden_.run(device_, params_, images, params_buffer_, input_, hidden_);
+    to_outputs_.run(device_, params_, images, params_buffer_, hidden_, outputs_);
+    for (int l = 0; l < levels_; ++l) splat(l, images, splatted_, 0, cells_, false);
+    slice(images);
+}
+
+std::vector<float> NeuralGrid::download(const Buffer& planes, int channels, int image, int channel) {
+    std::vector<float> plane =
+        device_.download<float>(planes, params_.plane, (static_cast<std::size_t>(image) * channels + channel) * params_.plane);
+    std::vector<float> bare;
+    bare.reserve(static_cast<std::size_t>(params_.width) * params_.height);
+    for (int y = 0; y < params_.height; ++y) {
+        const auto row = plane.begin() + (y + params_.pad) * params_.row + params_.pad;
+        bare.insert(bare.end(), row, row + params_.width);
+    }
+    return bare;
+}
+
+} // namespace clvr

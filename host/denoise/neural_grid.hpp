@@ -1,0 +1,101 @@
+// GuideNet and the bilateral grids over a batch of equal images, on a device.
+#pragma once
+#include "host/denoise/channels.hpp"
+#include "host/denoise/model.hpp"
+#include "runtime/device.hpp"
+
+#include <vector>
+
+namespace clvr {
+
+/// What a batch is made of. All sizes in pixels.
+struct BatchShape {
+    int width = 0, height = 0, images = 1;
+    bool show = false;   ///< keep each level's own result
+    bool target = false; ///< images come with targets
+};
+
+/// A convolution kernel with its weights in the kernel's order.
+class Convolution {
+public:
+    Convolution() = default;
+    /// `stage`: kernels/<stage>.cl. `first`: of the layer's weights among the model's parameters, biases at `first_bias` (backwards: none).
+    /// Forward maps `in` channels to `out`; `mirrored` is the backward one, from the layer's `in` outputs to its `out` inputs.
+    Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
+                bool mirrored);
+    /// Takes the parameters (order of Model::flat).
+    void set_parameters(Device& device, const Buffer& parameters);
+    /// Convolves the planes `in` to `out` (DenoiseParams), for so many images; `more` are the stage's further arguments.
+    template <class... More>
+    void run(Device& device, const shared::DenoiseParams& shape, int images, const Buffer& params, const Buffer& in, const Buffer& out,
+             const More&... more) {
+        device.launch(kernel_, range(shape, images), group_, work(shape, images), params, in, weights_, bias_, out, more...);
+    }
+    /// A row of planes is a multiple of this [floats], plus the borders.
+    static int row_granularity(const Device& device);
+
+private:
+    Kernel kernel_, pack_;
+    Buffer weights_, bias_, weights_from_, bias_from_;
+    Range group_;
+    int in_ = 0, out_ = 0, size_ = 0, step_ = 1;
+
+    Range range(const shared::DenoiseParams& shape, int images) const;
+    Work work(const shared::DenoiseParams& shape, int images) const;
+};
+
+class NeuralGrid {
+public:
+    /// Allocates the batch's buffers. Throws Error{memory}.
+    NeuralGrid(const Device& device, const Model& model, const BatchShape& shape);
+
+    /// Takes the parameters (order of Model::flat).
+    void set_parameters(const Buffer& parameters);
+    /// Image n of the batch becomes the part of `source` (planes of a ChannelPlan, `source_width` x `source_height` each) at (x, y), in one
+    /// of the 8 orientations.
+    void assemble(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
+                  int orientation, int n);
+    /// From the assembled images to result().
+    void forward(int images);
+
+    /// Device bytes of a batch.
+    static std::size_t bytes(const Device& device, const Model& model, const BatchShape& shape);
+    /// Shapes of the planes and grids.
+    static shared::DenoiseParams params_of(const Device& device, const Model& model, int width, int height);
+
+    const shared::DenoiseParams& shape() const { return params_; }
+    std::size_t plane_floats(int channels) const { return static_cast<std::size_t>(batch_.images) * channels * params_.plane; }
+    std::size_t pixels() const { return static_cast<std::size_t>(batch_.images) * params_.width * params_.height; }
+    const Buffer& params() const { return params_buffer_; }
+    const Buffer& input() const { return input_; }               ///< planes, model.channels
+    const Buffer& hidden() const { return hidden_; }             ///< planes, model.hidden, after the activation
+    const Buffer& outputs() const { return outputs_; }           ///< planes, model.outputs(), 0..1
+    const Buffer& splatted() const { return splatted_; }         ///< float4 a pixel: demodulated radiance, weight
+    const Buffer& remodulation() const { return remodulation_; } ///< float4 a pixel
+    const Buffer& cells() const { return cells_; }               ///< float4 a cell: mean colour, weight
+    const Buffer& result() const { return result_; }             ///< planes, 3, or 3 + 3 levels with `show`
+    const Buffer& target() const { return target_; }             ///< planes, 3
+
+    /// The stages alone, for those who bring their own planes.
+    /// Splats float4 colours (from image `first_image` of `pixels` on) into a level of `cells`: means and weights, or with `sums` the sums.
+    void splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums);
+    void slice(int images);
+    /// A plane without its border, [height * width], from planes of so many channels.
+    std::vector<float> download(const Buffer& planes, int channels, int image, int channel);
+
+    Range pixel_group() const;
+
+private:
+    Device device_;
+    int levels_, channels_;
+    BatchShape batch_;
+    shared::DenoiseParams params_;
+    Kernel assemble_, slice_;
+    std::vector<Kernel> splat_, sum_;
+    std::vector<int> bins_;
+    Convolution to_hidden_, to_outputs_;
+    Buffer params_buffer_, channel_list_, source_params_, input_, hidden_, outputs_, splatted_, remodulation_, cells_, result_, target_;
+    shared::SourceParams source_{};
+};
+
+} // namespace clvr

@@ -1,0 +1,8 @@
+// GuideNet's output, CLVR_WIDTH pixels at once: convolution of the hidden layer, then the sigmoid: a guide a level, then the blending weights (SPEC.md section 3).
+#include "lib/convolution.clh"
+
+#define SIGMOID(sum, at) (1.0f / (1.0f + v_exp(-(sum))))
+
+__kernel void guides(__constant DenoiseParams* p, __global const float* in, __global const float* weights, __global const float* bias, __global float* out) {
+    CONVOLVE(p, in, weights, bias, out, SIGMOID)
+}

@@ -1,0 +1,49 @@
+// The neural bilateral grid on the device: its planes, its levels, where its input comes from.
+#ifndef CLVR_SHARED_DENOISE_PARAMS_H
+#define CLVR_SHARED_DENOISE_PARAMS_H
+#include "shared/types.h"
+CLVR_SHARED_BEGIN
+
+#define CLVR_LEVELS_MAX 8
+
+/// A bilateral grid: `rows` x `columns` x `depth` cells, depth fastest, from cell `offset` of its image's cells on.
+typedef struct GridLevel {
+    uint offset;               ///< [cells]
+    int pixels, codes;         ///< sampling factors: pixels per cell (both ways), codes per cell
+    int rows, columns, depth;  ///< [cells]
+    float inverse_codes;
+    float slope;               ///< of the depth coordinate by the guide: DenoiseParams::guide_scale / codes
+} GridLevel;
+CLVR_CHECK_SIZE(GridLevel, 32);
+
+/// Shapes of a batch of equal images. Planes (network input, hidden layer, guides and blending weights, output, target and their gradients) have a border
+/// of `pad` zeros: channel c of C, row y, column x of image n is float ((n C + c) plane + (y + pad) row + pad + x); right of the image, zeros
+/// up to the end of the row. Pixels (splatted colours and such) are float4 n width height + y width + x.
+typedef struct DenoiseParams {
+    int width, height; ///< of each image [pixels]
+    int row, plane;    ///< [floats]
+    int pad;           ///< half the convolution's size
+    int levels;        ///< bilateral grids, finest first
+    uint cells;        ///< of all levels of an image
+    float guide_scale; ///< codes (of 0..255) per unit of a guide
+    GridLevel level[CLVR_LEVELS_MAX];
+} DenoiseParams;
+CLVR_CHECK_SIZE(DenoiseParams, 288);
+
+/// What a channel of the network's input is made of.
+enum ChannelKind { CLVR_CHANNEL_PLAIN, CLVR_CHANNEL_RADIANCE, CLVR_CHANNEL_NORMAL };
+
+/// Planes of a source image (each width * height floats, no border), by number; -1: absent.
+typedef struct SourceParams {
+    int beauty, albedo; ///< the first of three
+    int opacity;        ///< weight of a pixel; absent: 1
+    int target;         ///< the first of three
+    int channels;       ///< of the network's input
+    float exposure;     ///< factor of radiance
+    float ceiling;      ///< radiance is clamped here after exposure
+    float albedo_floor;
+} SourceParams;
+CLVR_CHECK_SIZE(SourceParams, 32);
+
+CLVR_SHARED_END
+#endif
