@@ -99,6 +99,8 @@ shared::DenoiseParams NeuralGrid::params_of(const Device& device, const Model& m
         level.depth = (256 + codes - 1) / codes;
         level.inverse_codes = static_cast<float>(1.0 / codes);
         level.slope = static_cast<float>(255.0 / codes);
+        level.reciprocal = static_cast<std::uint32_t>(((std::uint64_t{1} << 32) + 2 * pixels - 1) / (2 * pixels));
+        level.half_pixel = static_cast<float>(0.5 / pixels);
         p.cells += static_cast<std::uint32_t>(level.rows) * level.columns * level.depth;
     }
     return p;
@@ -114,13 +116,17 @@ std::size_t NeuralGrid::bytes(const Device& device, const Model& model, const Ba
 NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShape& shape)
     : device_(device), levels_(static_cast<int>(model.levels.size())), channels_(static_cast<int>(model.channels.size())), batch_(shape),
       params_(params_of(device, model, shape.width, shape.height)) {
-    assemble_ = device_.kernel("denoise/assemble", {{"CLVR_WIDTH", "1"}});
-    slice_ = device_.kernel("denoise/slice", {{"CLVR_SHOW", shape.show ? "1" : "0"}});
+    const std::string width = std::to_string(pixel_width(device_));
+    assemble_ = device_.kernel("denoise/assemble", {{"CLVR_WIDTH", width}});
+    slice_ = device_.kernel("denoise/slice", {{"CLVR_WIDTH", width}, {"CLVR_SHOW", shape.show ? "1" : "0"}});
     for (int l = 0; l < levels_; ++l) {
         bins_.push_back(is_cpu(device_) ? params_.level[l].depth : 1);
         bins_.back() = std::min(device_.tunable("splat_bins", bins_.back()), params_.level[l].depth);
         for (auto [kernels, sums] : {std::pair(&splat_, "0"), {&sum_, "1"}})
-            kernels->push_back(device_.kernel("denoise/splat", {{"CLVR_BINS", std::to_string(bins_.back())}, {"CLVR_SUMS", sums}}));
+            kernels->push_back(device_.kernel("denoise/splat", {{"CLVR_WIDTH", width},
+                                                                {"CLVR_BINS", std::to_string(bins_.back())},
+                                                                {"CLVR_WHOLE", bins_.back() == params_.level[l].depth ? "1" : "0"},
+                                                                {"CLVR_SUMS", sums}}));
     }
     const std::size_t conv1 = model.conv1_weight.size(), bias1 = model.conv1_bias.size(), conv2 = model.conv2_weight.size();
     to_hidden_ = Convolution(device_, "denoise/hidden", channels_, model.hidden, model.kernel, 0, conv1, false);
@@ -141,15 +147,26 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
                   {result_, results, "denoised picture"},
                   {target_, shape.target ? 3 : 0, "target"}};
     for (auto& [buffer, channels, label] : planes) {
-        buffer = device_.buffer(std::max<std::size_t>(plane_floats(channels) * 4, 16), label);
+        buffer = device_.buffer(plane_floats(channels) * 4 + 64 /* rows are read 16 pixels at once */, label);
         device_.fill(buffer, 0);
     }
     splatted_ = device_.buffer(pixels() * 16, "colours to splat");
     remodulation_ = device_.buffer(pixels() * 16, "albedo");
-    cells_ = device_.buffer(std::size_t{16} * params_.cells * shape.images, "bilateral grids");
+    cells_ = device_.buffer(std::size_t{16} * (params_.cells * shape.images + 1), "bilateral grids") /* slicing reads cells in pairs */;
 }
 
-Range NeuralGrid::pixel_group() const { return is_cpu(device_) ? Range{64, 1} : Range{32, 4}; }
+int NeuralGrid::pixel_width(const Device& device) { return conv_width(device); }
+
+Range NeuralGrid::pixel_items(int images) const {
+    const int width = pixel_width(device_);
+    return {static_cast<std::size_t>((params_.width + width - 1) / width), static_cast<std::size_t>(params_.height),
+            static_cast<std::size_t>(images)};
+}
+
+Range NeuralGrid::pixel_group() const {
+    const auto x = static_cast<std::size_t>(device_.tunable("pixel_group", pixel_width(device_) == 1 ? 32 : 4));
+    return {x, is_cpu(device_) ? 1u : 4u};
+}
 
 void NeuralGrid::set_parameters(const Buffer& parameters) {
     to_hidden_.set_parameters(device_, parameters);
@@ -162,11 +179,24 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
         source_ = params;
         device_.write(source_params_, &source_, sizeof source_);
     }
-    const shared::int4 from{x, y, orientation, n};
-    const std::array<std::int32_t, 2> extent{source_width, source_height};
-    device_.launch(assemble_, {static_cast<std::size_t>(params_.width), static_cast<std::size_t>(params_.height)}, pixel_group(),
+    // The part's pixel (column, row) is the result of quarter turns of (x, y) within width x height, rows upside down first for 4..7
+    // (SPEC.md section 9): an affine map, found from three of its pixels.
+    const auto source_pixel = [&](int column, int row) {
+        int rows = params_.height, columns = params_.width;
+        if (orientation >= 4) row = rows - 1 - row;
+        for (int turn = orientation & 3; turn > 0; --turn) {
+            const int above = row;
+            row = column, column = rows - 1 - above;
+            std::swap(rows, columns);
+        }
+        return (y + row) * source_width + x + column;
+    };
+    const int first = source_pixel(0, 0);
+    const shared::int4 from{first, source_pixel(1, 0) - first, source_pixel(0, 1) - first, n};
+    const auto size = static_cast<cl_uint>(source_width) * static_cast<cl_uint>(source_height);
+    device_.launch(assemble_, pixel_items(1), pixel_group(),
                    {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, source_params_, source,
-                   extent, from, channel_list_, input_, splatted_, remodulation_, target_);
+                   size, from, channel_list_, input_, splatted_, remodulation_, target_);
 }
 
 void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {
@@ -176,20 +206,23 @@ void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_im
     const double count = static_cast<double>(params_.width) * params_.height * images;
     device_.launch(sums ? sum_[level] : splat_[level],
                    {static_cast<std::size_t>(l.columns), static_cast<std::size_t>(l.rows), static_cast<std::size_t>(images) * runs}, group,
-                   {count * 20 + 16.0 * l.rows * l.columns * l.depth * images, 0}, params_buffer_, level, 2 * levels_ - 1, outputs_, pixels, first_image,
-                   cells);
+                   {count * 20 + 16.0 * l.rows * l.columns * l.depth * images, 0}, params_buffer_, level, 2 * levels_ - 1, outputs_, pixels,
+                   first_image, cells);
 }
 
 void NeuralGrid::slice(int images) {
-    device_.launch(slice_,
-                   {static_cast<std::size_t>(params_.width), static_cast<std::size_t>(params_.height), static_cast<std::size_t>(images)},
-                   pixel_group(), {static_cast<double>(params_.width) * params_.height * images * (48 + 128 * levels_), 0}, params_buffer_,
-                   outputs_, cells_, remodulation_, result_);
+    device_.launch(slice_, pixel_items(images), pixel_group(),
+                   {static_cast<double>(params_.width) * params_.height * images * (48 + 128 * levels_), 0}, params_buffer_, outputs_,
+                   cells_, remodulation_, result_);
+}
+
+void NeuralGrid::guide_network(int images) {
+    to_hidden_.run(device_, params_, images, params_buffer_, input_, hidden_);
+    to_outputs_.run(device_, params_, images, params_buffer_, hidden_, outputs_);
 }
 
 void NeuralGrid::forward(int images) {
-    to_hidden_.run(device_, params_, images, params_buffer_, input_, hidden_);
-    to_outputs_.run(device_, params_, images, params_buffer_, hidden_, outputs_);
+    guide_network(images);
     for (int l = 0; l < levels_; ++l) splat(l, images, splatted_, 0, cells_, false);
     slice(images);
 }

@@ -76,14 +76,19 @@ public:
     const Buffer& result() const { return result_; }             ///< planes, 3, or 3 + 3 levels with `show`
     const Buffer& target() const { return target_; }             ///< planes, 3
 
-    /// The stages alone, for those who bring their own planes.
+    /// The stages alone.
+    void guide_network(int images);
     /// Splats float4 colours (from image `first_image` of `pixels` on) into a level of `cells`: means and weights, or with `sums` the sums.
     void splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums);
     void slice(int images);
     /// A plane without its border, [height * width], from planes of so many channels.
     std::vector<float> download(const Buffer& planes, int channels, int image, int channel);
 
+    /// Work-items and group of a kernel over all pixels, pixel_width() of a row each.
+    Range pixel_items(int images) const;
     Range pixel_group() const;
+    /// Pixels of a row that a work-item takes: a tunable, 16 on CPUs, 1 on GPUs.
+    static int pixel_width(const Device& device);
 
 private:
     Device device_;

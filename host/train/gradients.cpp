@@ -46,9 +46,9 @@ Gradients::Gradients(const Device& device, const Model& model, Loss loss, const 
     width_ = device_.tunable("conv_width", cpu ? 16 : 1);
     const std::string width = std::to_string(width_), size = std::to_string(kernel_);
     loss_ = device_.kernel("train/loss", {{"CLVR_WIDTH", width}, {"CLVR_LOSS", std::to_string(static_cast<int>(loss))}});
-    slice_gradient_ = device_.kernel("train/slice_gradient");
+    slice_gradient_ = device_.kernel("train/slice_gradient", {{"CLVR_WIDTH", width}});
     normalise_gradient_ = device_.kernel("train/normalise_gradient");
-    guide_gradient_ = device_.kernel("train/guide_gradient");
+    guide_gradient_ = device_.kernel("train/guide_gradient", {{"CLVR_WIDTH", width}});
     bias_gradient_ = device_.kernel("train/bias_gradient", {{"CLVR_WIDTH", width}});
     sum_lanes_ = device_.kernel("train/sum_lanes");
     sum_runs_ = device_.kernel("train/sum_runs");
@@ -88,7 +88,7 @@ void Gradients::backward(NeuralGrid& forward, int images, float share, const Buf
     const shared::DenoiseParams& p = forward.shape();
     const auto n = static_cast<std::size_t>(images), rows = n * static_cast<std::size_t>(p.height);
     const double pixels = static_cast<double>(p.width) * p.height * images;
-    const Range all{static_cast<std::size_t>(p.width), static_cast<std::size_t>(p.height), n};
+    const Range all = forward.pixel_items(images);
     const Range lane_items{lanes / static_cast<std::size_t>(width_), static_cast<std::size_t>(p.height), n},
         lane_group{lanes / static_cast<std::size_t>(width_)};
 

@@ -1,12 +1,13 @@
 // Splats pixels into a bilateral grid with tent weights, the tent filter with it (SPEC.md sections 5 and 12). A work-item gathers CLVR_BINS cells of one
-// grid column from the four blocks of pixels around it, in the order 00 01 10 11, each by rows: the same sums for every shape, no atomics. On PoCL
-// a whole column at once is fastest, on GPUs a cell a work-item. Global: x = columns, y = rows, z = images * ceil(depth / CLVR_BINS).
-#pragma OPENCL FP_CONTRACT OFF
-#include "shared/denoise_params.h"
+// grid column from the four blocks of pixels around it, in the order 00 01 10 11, each by rows: the same sums for every shape, no atomics. Cells
+// and weights are found for CLVR_WIDTH pixels at once. On PoCL a whole column a work-item is fastest, on GPUs a cell. Global: x = columns, y = rows, z = images * ceil(depth / CLVR_BINS).
 #include "lib/grid.clh"
 
 #ifndef CLVR_BINS
 #define CLVR_BINS 64
+#endif
+#ifndef CLVR_WHOLE // 1: CLVR_BINS is the depth
+#define CLVR_WHOLE 1
 #endif
 #ifndef CLVR_SUMS // 1: store the sums N and D; 0: the mean N / D and D
 #define CLVR_SUMS 0
@@ -23,8 +24,8 @@ __kernel void splat(__constant DenoiseParams* p, int level_number, int planes, _
     guides += plane_start(p, n, planes, level_number);
     splatted += (size_t)(first_image + n) * (size_t)(p->width * p->height);
 
-    float4 sum[CLVR_BINS];
-    for (int k = 0; k < CLVR_BINS; ++k) sum[k] = (float4)(0.0f);
+    float4 sums[CLVR_BINS + 2], *sum = sums + 1; // a cell more at either end, for what is dropped
+    for (int k = 0; k < CLVR_BINS + 2; ++k) sums[k] = (float4)(0.0f);
     int cell = level->pixels, half_cell = cell / 2;
     for (int quarter = 0; quarter < 4; ++quarter) {
         // The pixels between the centres of cell rows `above` and above + 1, cell columns `left` and left + 1.
@@ -33,14 +34,19 @@ __kernel void splat(__constant DenoiseParams* p, int level_number, int planes, _
         y0 = y0 > 0 ? y0 : 0, y1 = y1 < p->height ? y1 : p->height;
         x0 = x0 > 0 ? x0 : 0, x1 = x1 < p->width ? x1 : p->width;
         for (int y = y0; y < y1; ++y) {
-            float ty = tent_of_pixel(y, cell).t, wy = above < row ? ty : 1.0f - ty;
-            for (int x = x0; x < x1; ++x) {
-                float tx = tent_of_pixel(x, cell).t, w = wy * (left < column ? tx : 1.0f - tx);
-                Tent depth = tent_of_guide(p, level, guides[y * p->row + x]);
-                float4 colour = splatted[y * p->width + x];
-                int lower = depth.lower - first;
-                if (lower >= 0 && lower < CLVR_BINS) sum[lower] = fma((float4)(w * (1.0f - depth.t)), colour, sum[lower]);
-                if (lower >= -1 && lower + 1 < CLVR_BINS) sum[lower + 1] = fma((float4)(w * depth.t), colour, sum[lower + 1]);
+            vfloat ty = tent_of_pixel(level, (vint)(y)).t, wy = above < row ? ty : 1.0f - ty;
+            for (int x = x0; x < x1; x += CLVR_WIDTH) {
+                vfloat tx = tent_of_pixel(level, (vint)(x) + v_iota).t, w = wy * (left < column ? tx : 1.0f - tx);
+                Tent depth = tent_of_guide(p, level, v_load(guides + y * p->row + x));
+                int to[CLVR_WIDTH];
+                float lower[CLVR_WIDTH], upper[CLVR_WIDTH];
+                v_store(depth.lower - first, to), v_store(w * (1.0f - depth.t), lower), v_store(w * depth.t, upper);
+                for (int i = 0; i < CLVR_WIDTH && x + i < x1; ++i) {
+                    if (!CLVR_WHOLE && (to[i] < -1 || to[i] >= CLVR_BINS)) continue;
+                    float4 colour = splatted[y * p->width + x + i];
+                    sum[to[i]] = fma((float4)(lower[i]), colour, sum[to[i]]);
+                    sum[to[i] + 1] = fma((float4)(upper[i]), colour, sum[to[i] + 1]);
+                }
             }
         }
     }

@@ -13,8 +13,10 @@ typedef struct GridLevel {
     int rows, columns, depth;  ///< [cells]
     float inverse_codes;
     float slope;               ///< of the depth coordinate by the guide: DenoiseParams::guide_scale / codes
+    uint reciprocal;           ///< 2^32 / (2 pixels), rounded up: mul_hi by it divides by 2 pixels
+    float half_pixel;          ///< 1 / (2 pixels)
 } GridLevel;
-CLVR_CHECK_SIZE(GridLevel, 32);
+CLVR_CHECK_SIZE(GridLevel, 40);
 
 /// Shapes of a batch of equal images. Planes (network input, hidden layer, guides and blending weights, output, target and their gradients) have a border
 /// of `pad` zeros: channel c of C, row y, column x of image n is float ((n C + c) plane + (y + pad) row + pad + x); right of the image, zeros
@@ -28,7 +30,7 @@ typedef struct DenoiseParams {
     float guide_scale; ///< codes (of 0..255) per unit of a guide
     GridLevel level[CLVR_LEVELS_MAX];
 } DenoiseParams;
-CLVR_CHECK_SIZE(DenoiseParams, 288);
+CLVR_CHECK_SIZE(DenoiseParams, 352);
 
 /// What a channel of the network's input is made of.
 enum ChannelKind { CLVR_CHANNEL_PLAIN, CLVR_CHANNEL_RADIANCE, CLVR_CHANNEL_NORMAL };

@@ -1,7 +1,7 @@
-// The loss by the guides, through slicing and splatting at once (SPEC.md section 8), then by the sums before their sigmoid. One work-item a pixel.
-#pragma OPENCL FP_CONTRACT OFF
-#include "shared/denoise_params.h"
+// The loss by the guides, through slicing and splatting at once (SPEC.md section 8), then by the sums before their sigmoid. A work-item takes CLVR_WIDTH
+// pixels of a row.
 #include "lib/grid.clh"
+#include "lib/pixels.clh"
 
 #ifndef CLVR_IMAGE_GRADIENT // 1: also the loss by the splatted colours (xyz) and weights (w), summed over the levels
 #define CLVR_IMAGE_GRADIENT 0
@@ -9,37 +9,55 @@
 
 static inline float inner(float4 a, float4 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 
+// dL/d(weight of a pixel in a cell): by splatting its colour and weight, and by slicing. `a`: A and b of the cell.
+static inline float toward(float4 cell, float4 a, float4 colour, float4 sliced, float4 up) {
+    return fma(-a.w, colour.w, inner(a, colour)) + (cell.w > 0.0f ? inner(up, cell - sliced) : 0.0f);
+}
+
 // `gradients`: A (xyz) and b (w) of each cell. `upstream` as slice_gradient writes it. `output_gradient`: the planes of the guides are written.
 __kernel void guide_gradient(__constant DenoiseParams* p, __global const float* planes, __global const float4* cells, __global const float4* gradients,
                              __global const float4* splatted, __global const float4* upstream, __global float* output_gradient,
                              __global float4* image_gradient) {
-    int x = (int)get_global_id(0), y = (int)get_global_id(1), n = (int)get_global_id(2), outputs = 2 * p->levels - 1;
+    int x = (int)get_global_id(0) * CLVR_WIDTH, y = (int)get_global_id(1), n = (int)get_global_id(2), outputs = 2 * p->levels - 1;
     if (x >= p->width || y >= p->height) return;
-    size_t images = get_global_size(2), pixels = (size_t)p->width * (size_t)p->height;
-    size_t pixel = (size_t)n * pixels + (size_t)(y * p->width + x), at = (size_t)(y * p->row + x);
-    float4 colour = splatted[pixel], to_image = (float4)(0.0f);
+    int images = (int)get_global_size(2), left = p->width - x;
+    size_t at = (size_t)(y * p->row + x);
     cells += (size_t)n * p->cells, gradients += (size_t)n * p->cells;
+#if CLVR_IMAGE_GRADIENT
+    float4 to_image[CLVR_WIDTH];
+    for (int i = 0; i < CLVR_WIDTH; ++i) to_image[i] = (float4)(0.0f);
+#endif
 
     for (int l = 0; l < p->levels; ++l) {
         __constant const GridLevel* level = p->level + l;
         size_t to = plane_start(p, n, outputs, l) + at;
-        float guide = planes[to], sum = 0.0f;
-        Neighbours near = neighbours_of(p, level, x, y, guide);
-        float4 sliced = slice_grid(level, &near, cells), up = upstream[(size_t)l * images * pixels + pixel];
-        for (int j = 0; j < 2; ++j)
-            for (int i = 0; i < 2; ++i) {
-                uint column = cell_column(level, &near, j, i);
-                float w = near.row.weight[j] * near.column.weight[i];
-                for (int k = 0; k < 2; ++k) {
-                    float4 cell = cells[column + (uint)near.depth.cell[k]], a = gradients[column + (uint)near.depth.cell[k]];
-                    float splat = fma(-a.w, colour.w, inner(a, colour)), slice = cell.w > 0.0f ? inner(up, cell - sliced) : 0.0f;
-                    sum = fma(w * near.depth.slope[k], splat + slice, sum);
+        vfloat guide = v_load(planes + to);
+        Neighbours near;
+        find_neighbours(p, level, x, y, guide, &near);
+        Sliced sliced = slice_grid(&near, cells);
+        float r[CLVR_WIDTH], g[CLVR_WIDTH], b[CLVR_WIDTH], slope[CLVR_WIDTH];
+        v_store(sliced.r, r), v_store(sliced.g, g), v_store(sliced.b, b), v_store((vfloat)(0.0f), slope);
+        for (int i = 0; i < CLVR_WIDTH && i < left; ++i) {
+            float4 colour = splatted[pixel_number(p, n, x + i, y)], up = upstream[pixel_number(p, l * images + n, x + i, y)];
+            float4 mean = (float4)(r[i], g[i], b[i], 0.0f);
+            float sum = 0.0f;
+#pragma unroll
+            for (int k = 0; k < 4; ++k) {
+                float8 cell = cell_pair(&near, cells, k, i), a = cell_pair(&near, gradients, k, i);
+                float lower = toward(cell.lo, a.lo, colour, mean, up), upper = toward(cell.hi, a.hi, colour, mean, up);
+                sum = fma(near.weight[k][i], fma(near.upper_slope[i], upper, near.lower_slope[i] * lower), sum);
 #if CLVR_IMAGE_GRADIENT
-                    to_image = fma((float4)(w * near.depth.weight[k]), (float4)(a.x, a.y, a.z, -a.w), to_image);
+                float4 share = fma((float4)(near.upper[i]), a.hi, a.lo * near.lower[i]);
+                to_image[i] = fma((float4)(near.weight[k][i]), (float4)(share.x, share.y, share.z, -share.w), to_image[i]);
 #endif
-                }
             }
-        output_gradient[to] = sum * level->slope * (guide * (1.0f - guide));
+            slope[i] = sum;
+        }
+        v_store(v_load(slope) * level->slope * (guide * (1.0f - guide)), output_gradient + to);
     }
-    if (CLVR_IMAGE_GRADIENT) image_gradient[pixel] = to_image;
+#if CLVR_IMAGE_GRADIENT
+    for (int i = 0; i < CLVR_WIDTH && i < left; ++i) image_gradient[pixel_number(p, n, x + i, y)] = to_image[i];
+#else
+    (void)image_gradient;
+#endif
 }
