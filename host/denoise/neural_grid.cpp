@@ -10,11 +10,14 @@ namespace {
 
 bool is_cpu(const Device& device) { return device.facts().type == DeviceType::cpu; }
 int conv_width(const Device& device) { return device.tunable("conv_width", is_cpu(device) ? 16 : 1); }
-int conv_vectors(const Device& device) { return device.tunable("conv_vectors", 4); }
+/// Vectors of a row that a work-item takes: 5, or 4 where that fills rows of this width better.
+int conv_vectors(const Device& device, int row_width) {
+    const auto padded = [&](int vectors) { return (row_width - 1) / (conv_width(device) * vectors) * vectors; };
+    return device.tunable("conv_vectors", padded(5) <= padded(4) ? 5 : 4);
+}
 Range conv_group(const Device& device) {
-    const bool cpu = is_cpu(device);
     const auto x = static_cast<std::size_t>(device.tunable("conv_group_x", conv_width(device) == 1 ? 32 : 1));
-    return {x, static_cast<std::size_t>(device.tunable("conv_group_y", cpu ? 16 : 4))};
+    return {x, static_cast<std::size_t>(device.tunable("conv_group_y", 4))};
 }
 
 /// Channels computed at once: the greatest divisor of `channels` up to `most`, so that none is computed in vain.
@@ -28,15 +31,15 @@ int round_up(int n, int multiple) { return (n + multiple - 1) / multiple * multi
 
 } // namespace
 
-int Convolution::row_granularity(const Device& device) {
+int Convolution::row_granularity(const Device& device, int row_width) {
     // Also a multiple of 16, the lanes of the weight gradients.
-    return std::max(16, conv_width(device) * conv_vectors(device) * static_cast<int>(conv_group(device).x));
+    return std::max(16, conv_width(device) * conv_vectors(device, row_width) * static_cast<int>(conv_group(device).x));
 }
 
 Convolution::Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
                          bool mirrored)
     : group_(conv_group(device)), in_(in), out_(out), size_(kernel) {
-    const int block = divisor(out, device.tunable("conv_block", 5)), width = conv_width(device), vectors = conv_vectors(device);
+    const int block = divisor(out, device.tunable("conv_block", 5)), width = conv_width(device), vectors = conv_vectors(device, row_width);
     step_ = width * vectors;
     kernel_ = device.kernel(stage, {{"CLVR_IN", std::to_string(in)},
                                     {"CLVR_OUT", std::to_string(out)},
@@ -84,7 +87,7 @@ shared::DenoiseParams NeuralGrid::params_of(const Device& device, const Model& m
     p.width = width;
     p.height = height;
     p.pad = model.kernel / 2;
-    p.row = round_up(width, Convolution::row_granularity(device)) + 2 * p.pad;
+    p.row = round_up(width, Convolution::row_granularity(device, width)) + 2 * p.pad;
     p.plane = p.row * (height + 2 * p.pad);
     p.levels = static_cast<int>(model.levels.size());
     p.guide_scale = 255;
@@ -129,9 +132,9 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
                                                                 {"CLVR_SUMS", sums}}));
     }
     const std::size_t conv1 = model.conv1_weight.size(), bias1 = model.conv1_bias.size(), conv2 = model.conv2_weight.size();
-    to_hidden_ = Convolution(device_, "denoise/hidden", channels_, model.hidden, model.kernel, 0, conv1, false);
-    to_outputs_ =
-        Convolution(device_, "denoise/guides", model.hidden, model.outputs(), model.kernel, conv1 + bias1, conv1 + bias1 + conv2, false);
+    to_hidden_ = Convolution(device_, "denoise/hidden", channels_, model.hidden, model.kernel, 0, conv1, false, shape.width);
+    to_outputs_ = Convolution(device_, "denoise/guides", model.hidden, model.outputs(), model.kernel, conv1 + bias1, conv1 + bias1 + conv2,
+                              false, shape.width);
 
     params_buffer_ = device_.upload(std::vector<shared::DenoiseParams>{params_}, "denoiser settings");
     channel_list_ = device_.upload(ChannelPlan(model, shape.target).channels(), "channel list");

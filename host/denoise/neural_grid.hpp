@@ -20,9 +20,10 @@ class Convolution {
 public:
     Convolution() = default;
     /// `stage`: kernels/<stage>.cl. `first`: of the layer's weights among the model's parameters, biases at `first_bias` (backwards: none).
-    /// Forward maps `in` channels to `out`; `mirrored` is the backward one, from the layer's `in` outputs to its `out` inputs.
+    /// Forward maps `in` channels to `out`; `mirrored` is the backward one, from the layer's `in` outputs to its `out` inputs. For rows of
+    /// `row_width` pixels.
     Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
-                bool mirrored);
+                bool mirrored, int row_width);
     /// Takes the parameters (order of Model::flat).
     void set_parameters(Device& device, const Buffer& parameters);
     /// Convolves the planes `in` to `out` (DenoiseParams), for so many images; `more` are the stage's further arguments.
@@ -31,8 +32,8 @@ public:
              const More&... more) {
         device.launch(kernel_, range(shape, images), group_, work(shape, images), params, in, weights_, bias_, out, more...);
     }
-    /// A row of planes is a multiple of this [floats], plus the borders.
-    static int row_granularity(const Device& device);
+    /// A row of planes for images so wide is a multiple of this [floats], plus the borders.
+    static int row_granularity(const Device& device, int row_width);
 
 private:
     Kernel kernel_, pack_;

@@ -61,7 +61,7 @@ Gradients::Gradients(const Device& device, const Model& model, Loss loss, const 
     };
     weight_gradient1_ = weights(channels_, hidden_, block1_);
     weight_gradient2_ = weights(hidden_, outputs_, block2_);
-    to_hidden_ = Convolution(device_, "train/hidden_gradient", outputs_, hidden_, kernel_, conv1_ + bias1_, 0, true);
+    to_hidden_ = Convolution(device_, "train/hidden_gradient", outputs_, hidden_, kernel_, conv1_ + bias1_, 0, true, shape.width);
 
     const shared::DenoiseParams& p = forward.shape();
     const auto images = static_cast<std::size_t>(shape.images);
