@@ -37,7 +37,7 @@ int Convolution::row_granularity(const Device& device, int row_width) {
 }
 
 Convolution::Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
-                         bool mirrored)
+                         bool mirrored, int row_width)
     : group_(conv_group(device)), in_(in), out_(out), size_(kernel) {
     const int block = divisor(out, device.tunable("conv_block", 5)), width = conv_width(device), vectors = conv_vectors(device, row_width);
     step_ = width * vectors;

@@ -7,6 +7,10 @@
 #define CLVR_IMAGE_GRADIENT 0
 #endif
 
+#ifndef CLVR_SIGMOID // 0: by the guides themselves
+#define CLVR_SIGMOID 1
+#endif
+
 static inline float inner(float4 a, float4 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 
 // dL/d(weight of a pixel in a cell): by splatting its colour and weight, and by slicing. `a`: A and b of the cell.
@@ -53,7 +57,8 @@ __kernel void guide_gradient(__constant DenoiseParams* p, __global const float* 
             }
             slope[i] = sum;
         }
-        v_store(v_load(slope) * level->slope * (guide * (1.0f - guide)), output_gradient + to);
+        vfloat by_guide = v_load(slope) * level->slope;
+        v_store(CLVR_SIGMOID ? by_guide * (guide * (1.0f - guide)) : by_guide, output_gradient + to);
     }
 #if CLVR_IMAGE_GRADIENT
     for (int i = 0; i < CLVR_WIDTH && i < left; ++i) image_gradient[pixel_number(p, n, x + i, y)] = to_image[i];

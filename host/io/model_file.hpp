@@ -1,0 +1,20 @@
+// Models to and from safetensors files (DESIGN.md "Model file").
+#pragma once
+#include "host/denoise/model.hpp"
+#include "host/io/safetensors.hpp"
+
+#include <string>
+
+namespace clvr {
+
+/// Reads a model. A file without metadata, with 10 input channels, means the reference's channels and no preprocessing. Throws
+/// Error{input}: what is wrong with the header, a tensor, a shape or a weight, and what was expected.
+Model read_model(const std::string& path);
+/// Writes the four tensors in order, the settings and the notes as metadata; atomically.
+void write_model(const Model& model, const std::string& path);
+
+/// The same within a larger file (a checkpoint). `where` names it in errors.
+Model model_of(const TensorFile& file, const std::string& where);
+TensorFile tensors_of(const Model& model);
+
+} // namespace clvr
