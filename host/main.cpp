@@ -44,6 +44,7 @@ int run(int argc, char** argv) {
     clvr::add_devices_command(app);
     clvr::add_info_command(app);
     clvr::add_render_command(app);
+    clvr::add_denoise_command(app);
     try {
         app.parse(argc, argv);
         if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");

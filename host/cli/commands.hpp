@@ -8,5 +8,6 @@ namespace clvr {
 void add_devices_command(CLI::App& app); // devices.cpp
 void add_info_command(CLI::App& app);    // info.cpp
 void add_render_command(CLI::App& app);  // render.cpp
+void add_denoise_command(CLI::App& app); // denoise.cpp
 
 } // namespace clvr

@@ -1,46 +1,29 @@
 // clvr render: a volume or a scene to pictures.
 #include "host/cli/commands.hpp"
+#include "host/cli/interrupt.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
+#include "host/denoise/denoiser.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/frame_file.hpp"
+#include "host/io/model_file.hpp"
 #include "host/io/scene_file.hpp"
 #include "host/render/params.hpp"
 #include "host/render/renderer.hpp"
 #include "runtime/embedded.hpp"
-#include "runtime/select.hpp"
 #include "runtime/sha256.hpp"
-#include "runtime/size.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <atomic>
-#include <csignal>
 #include <filesystem>
-#include <iostream>
+#include <optional>
 
 namespace clvr {
 
 namespace {
-
-std::atomic<bool> interrupted{false};
-extern "C" void on_interrupt(int) { interrupted = true; }
-
-/// Ctrl-C and SIGTERM end the rendering, not the program: what was finished is saved. A second one kills.
-void catch_interrupts() {
-    struct sigaction action {};
-    action.sa_handler = on_interrupt;
-    action.sa_flags = SA_RESETHAND;
-    sigaction(SIGINT, &action, nullptr);
-    sigaction(SIGTERM, &action, nullptr);
-}
-
-bool is_exr(const std::string& path) {
-    const std::string ending = std::filesystem::path(path).extension().string();
-    return ending == ".exr" || ending == ".EXR";
-}
 
 std::string numbered(const std::string& path, int frame) {
     const std::filesystem::path p(path);
@@ -49,17 +32,6 @@ std::string numbered(const std::string& path, int frame) {
 
 void print_presets() {
     for (const auto& p : transfer_presets()) fmt::print("{:<16} {}\n", p.name, p.description);
-}
-
-std::vector<Device> open_devices(const RenderOptions& o) {
-    const Selection selection = select_devices(o.device);
-    std::vector<Device> devices;
-    for (const auto& facts : selection.devices) {
-        devices.push_back(Device::open(facts, o.relaxed));
-        if (!o.memory.empty()) devices.back().set_memory_limit(parse_size(o.memory, "--memory"));
-        spdlog::debug("device {}: {} ({})", facts.index, facts.name, selection.rule);
-    }
-    return devices;
 }
 
 /// One value that changes with any kernel file.
@@ -92,16 +64,9 @@ void add_provenance(Frame& frame, const Scene& scene, const std::vector<Device>&
     frame.attributes["clvr.kernels.sha256"] = kernels_sha256();
 }
 
-void save(const Frame& frame, const Scene& scene, const std::string& path) {
-    if (is_exr(path))
-        write_exr(frame, path);
-    else
-        write_png(frame, {scene.tonemap, scene.exposure}, path);
-}
-
 /// Renders one view and writes it to all outputs. Returns the samples reached.
-int render_view(Renderer& renderer, const Scene& scene, const RenderOptions& o, const std::vector<Device>& devices,
-                const std::vector<std::string>& outputs, const std::string& label) {
+int render_view(Renderer& renderer, Denoiser* denoiser, const Scene& scene, const RenderOptions& o, const std::vector<Device>& devices,
+                const std::atomic<bool>& interrupted, const std::vector<std::string>& outputs, const std::string& label) {
     Frame frame;
     {
         ProgressBar bar(label, false);
@@ -119,8 +84,9 @@ int render_view(Renderer& renderer, const Scene& scene, const RenderOptions& o, 
     }
     Scene made = scene;
     made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
+    if (denoiser) frame = denoiser->denoise(frame);
     add_provenance(frame, made, devices);
-    for (const auto& path : outputs) save(frame, made, path);
+    for (const auto& path : outputs) write_frame(frame, {made.tonemap, made.exposure}, path);
     return made.spp;
 }
 
@@ -132,14 +98,19 @@ void render(const RenderOptions& o) {
     if (o.turntable < 0 || o.turntable > 10000)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
+    if (o.denoise && o.model.empty())
+        throw Error(ErrorKind::usage, "no model given: add --model FILE, as `clvr train` writes it", "--denoise");
     Scene scene = scene_of(o);
+    if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
+    std::optional<Model> model;
+    if (o.denoise) model = read_model(o.model);
     for (const auto& path : o.outputs) check_frame_path(path);
     if (!o.save_scene.empty()) check_writable(o.save_scene);
-    const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
+    const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr_path);
 
-    catch_interrupts();
+    const std::atomic<bool>& interrupted = catch_interrupts();
     const EnvironmentTables environment = environment_of(scene);
-    std::vector<Device> devices = open_devices(o);
+    std::vector<Device> devices = open_devices(o.devices);
     const PreparedVolume volume(open_volume(scene.volume, reading_options(scene), devices.front()));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
         const std::string hash = volume_sha256(volume.voxels);
@@ -156,9 +127,12 @@ void render(const RenderOptions& o) {
 
     Scene wanted = scene;
     wanted.features &= any_exr; // a PNG alone does not need them
+    wanted.features |= o.denoise;
     Renderer renderer(devices, volume, wanted, environment, o.turntable > 0);
     for (const auto& w : renderer.warnings()) spdlog::warn("{}", w);
 
+    std::optional<Denoiser> denoiser;
+    if (model) denoiser.emplace(devices.front(), *model);
     const double azimuth = scene.camera.azimuth;
     int reached = 0;
     for (int view = 0; view < std::max(1, o.turntable) && !interrupted; ++view) {
@@ -169,7 +143,7 @@ void render(const RenderOptions& o) {
             scene.view = view;
             renderer.aim(scene.camera, scene.view);
         }
-        reached = render_view(renderer, scene, o, devices, outputs,
+        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, devices, interrupted, outputs,
                               o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
     }
     if (!o.save_scene.empty()) {
@@ -178,11 +152,7 @@ void render(const RenderOptions& o) {
         scene.spp = reached;
         write_scene(scene, o.save_scene);
     }
-    if (o.profile)
-        for (auto& d : devices) {
-            d.finish();
-            fmt::print(stderr, "{}", d.profile().table());
-        }
+    print_profiles(o.devices, devices);
     if (interrupted)
         throw Error(ErrorKind::interrupted, fmt::format("interrupted; saved what was finished, {} samples per pixel", reached));
 }

@@ -129,6 +129,9 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--feature-samples", o.feature_samples, "Rays per pixel of the noise-free features, 1 or 4 [4]")->group("Picture");
     c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Picture");
 
+    c.add_flag("--denoise", o.denoise, "Denoise with a trained network; an EXR keeps the noisy picture as noisy.*")->group("Picture");
+    c.add_option("--model", o.model, "The network of --denoise (.safetensors)")->type_name("FILE")->group("Picture");
+
     c.add_option("--tf", o.transfer, "Transfer function: a preset's name, or a JSON file (clvr's or ParaView's) [from the histogram]")
         ->type_name("NAME|FILE")
         ->group("Volume");
@@ -164,12 +167,7 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
     c.add_flag("--orthographic", o.orthographic, "Camera: parallel projection")->group("Camera");
 
     add_volume_options(c, o.volume);
-    c.add_option("--device", o.device, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +")
-        ->type_name("SEL")
-        ->group("Device");
-    c.add_option("--memory", o.memory, "Use at most so much device memory")->type_name("SIZE")->group("Device");
-    c.add_flag("--relaxed", o.relaxed, "Use a device that fails the trust probe; its bits may differ")->group("Device");
-    c.add_flag("--profile", o.profile, "Print where the time went, a line a stage")->group("Device");
+    add_device_options(c, o.devices);
     c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Device");
 }
 

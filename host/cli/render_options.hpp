@@ -1,5 +1,6 @@
 // The options of `clvr render`, as text from the command line to a Scene.
 #pragma once
+#include "host/cli/device_options.hpp"
 #include "host/io/volume_file.hpp"
 #include "host/render/scene.hpp"
 
@@ -21,10 +22,11 @@ struct RenderOptions {
         environment_rotation;
     std::optional<int> spp, bounces, feature_samples;
     std::optional<std::uint64_t> seed;
-    bool orthographic = false, list_transfer = false, profile = false, relaxed = false, no_features = false;
+    bool orthographic = false, list_transfer = false, no_features = false, denoise = false;
     double seconds = 0;
     int turntable = 0;
-    std::string device, memory, save_scene;
+    std::string model, save_scene;
+    DeviceOptions devices;
 };
 
 void add_render_options(CLI::App& command, RenderOptions& options);

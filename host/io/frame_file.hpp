@@ -23,6 +23,11 @@ struct Tonemap {
 /// Error{input, usage}.
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);
 
+/// Whether the path ends in .exr.
+bool is_exr_path(const std::string& path);
+/// write_exr or write_png, by the path's ending.
+void write_frame(const Frame& frame, const Tonemap& tonemap, const std::string& path);
+
 /// Linear RGB image, row 0 on top: [width*height*3].
 struct RgbImage {
     int width = 0, height = 0;

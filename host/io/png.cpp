@@ -61,6 +61,13 @@ double srgb_encode(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::
 /// A picture of NaN would be black anyway; what the frame holds stays in its EXR.
 double displayable(float x) { return x > 0 ? std::min(static_cast<double>(x), 1e30) : 0.0; }
 
+/// In lower case.
+std::string ending_of(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending;
+}
+
 } // namespace
 
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path) {
@@ -99,12 +106,20 @@ void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& pa
     write_atomically(path, encoded.data(), size);
 }
 
+bool is_exr_path(const std::string& path) { return ending_of(path) == ".exr"; }
+
 void check_frame_path(const std::string& path) {
-    std::string ending = std::filesystem::path(path).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = ending_of(path);
     if (ending != ".exr" && ending != ".png")
         throw Error(ErrorKind::input, fmt::format("has the ending '{}'; expected .exr (all channels) or .png (a picture)", ending), path);
     check_writable(path);
+}
+
+void write_frame(const Frame& frame, const Tonemap& tonemap, const std::string& path) {
+    if (is_exr_path(path))
+        write_exr(frame, path);
+    else
+        write_png(frame, tonemap, path);
 }
 
 } // namespace clvr

@@ -1,0 +1,40 @@
+#include "host/cli/device_options.hpp"
+#include "runtime/select.hpp"
+#include "runtime/size.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace clvr {
+
+void add_device_options(CLI::App& c, DeviceOptions& o) {
+    c.add_option("--device", o.selector, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +")
+        ->type_name("SEL")
+        ->group("Device");
+    c.add_option("--memory", o.memory, "Use at most so much device memory")->type_name("SIZE")->group("Device");
+    c.add_flag("--relaxed", o.relaxed, "Use a device that fails the trust probe; its bits may differ")->group("Device");
+    c.add_flag("--profile", o.profile, "Print where the time went, a line a stage")->group("Device");
+}
+
+std::vector<Device> open_devices(const DeviceOptions& o) {
+    const Selection selection = select_devices(o.selector);
+    std::vector<Device> devices;
+    for (const auto& facts : selection.devices) {
+        devices.push_back(Device::open(facts, o.relaxed));
+        if (!o.memory.empty()) devices.back().set_memory_limit(parse_size(o.memory, "--memory"));
+        spdlog::debug("device {}: {} ({})", facts.index, facts.name, selection.rule);
+    }
+    return devices;
+}
+
+Device open_device(const DeviceOptions& options) { return open_devices(options).front(); }
+
+void print_profiles(const DeviceOptions& options, std::vector<Device> devices) {
+    if (!options.profile) return;
+    for (auto& d : devices) {
+        d.finish();
+        fmt::print(stderr, "{}", d.profile().table());
+    }
+}
+
+} // namespace clvr

@@ -1,0 +1,27 @@
+// The options that choose and limit devices: the same for every command that computes.
+#pragma once
+#include "runtime/device.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+struct DeviceOptions {
+    std::string selector, memory;
+    bool relaxed = false, profile = false;
+};
+
+/// Adds --device, --memory, --relaxed and --profile.
+void add_device_options(CLI::App& command, DeviceOptions& options);
+
+/// Opens what the options select (all of them, or the first alone), with its memory limit. Throws Error.
+std::vector<Device> open_devices(const DeviceOptions& options);
+Device open_device(const DeviceOptions& options);
+
+/// Prints each device's table to stderr where --profile asks for it.
+void print_profiles(const DeviceOptions& options, std::vector<Device> devices);
+
+} // namespace clvr
