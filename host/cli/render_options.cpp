@@ -112,30 +112,18 @@ TransferFunction transfer_of(const std::string& name) {
 
 } // namespace
 
-void add_render_options(CLI::App& c, RenderOptions& o) {
+void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_option("VOLUME", o.input, "Volume file or folder, scene JSON, or demo:head");
-    c.add_option("-o,--output", o.outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
     c.add_option("--spp", o.spp, "Samples per pixel [64]")->group("Picture");
-    c.add_option("--time", o.seconds, "Stop after about so many seconds, with whole passes of samples")
-        ->type_name("SECONDS")
-        ->group("Picture");
     c.add_option("--size", o.size, "Picture size [640x640]")->type_name("WxH")->group("Picture");
     c.add_option("--seed", o.seed, "Seed of the random numbers [0]")->group("Picture");
     c.add_option("--mode", o.mode, "path (path tracing), dvr (emission-absorption) or mip (maximum) [path]")->group("Picture");
-    c.add_option("--turntable", o.turntable, "Write a numbered sequence of N views around the volume")->type_name("N")->group("Picture");
-    c.add_option("--exposure", o.exposure, "PNG: exposure in stops [0]")->group("Picture");
-    c.add_option("--tonemap", o.tonemap, "PNG: filmic, aces, reinhard or none [filmic]")->group("Picture");
     c.add_option("--background", o.background, "transparent, environment or #rrggbb [transparent]")->group("Picture");
     c.add_option("--feature-samples", o.feature_samples, "Rays per pixel of the noise-free features, 1 or 4 [4]")->group("Picture");
-    c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Picture");
-
-    c.add_flag("--denoise", o.denoise, "Denoise with a trained network; an EXR keeps the noisy picture as noisy.*")->group("Picture");
-    c.add_option("--model", o.model, "The network of --denoise (.safetensors)")->type_name("FILE")->group("Picture");
 
     c.add_option("--tf", o.transfer, "Transfer function: a preset's name, or a JSON file (clvr's or ParaView's) [from the histogram]")
         ->type_name("NAME|FILE")
         ->group("Volume");
-    c.add_flag("--list-tf", o.list_transfer, "List the presets")->group("Volume");
     c.add_option("--extinction", o.extinction, "Extinction at opacity 1 [1/mm] [512 / diagonal]")->group("Volume");
     c.add_option("--clip-box", o.clip_box, "Keep only this part, as shares 0..1 of the volume along its axes")
         ->type_name("I0,J0,K0,I1,J1,K1")
@@ -168,7 +156,22 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
 
     add_volume_options(c, o.volume);
     add_device_options(c, o.devices);
+}
+
+void add_render_options(CLI::App& c, RenderOptions& o) {
+    c.add_option("-o,--output", o.outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
+    c.add_option("--time", o.seconds, "Stop after about so many seconds, with whole passes of samples")
+        ->type_name("SECONDS")
+        ->group("Picture");
+    c.add_option("--turntable", o.turntable, "Write a numbered sequence of N views around the volume")->type_name("N")->group("Picture");
+    c.add_option("--exposure", o.exposure, "PNG: exposure in stops [0]")->group("Picture");
+    c.add_option("--tonemap", o.tonemap, "PNG: filmic, aces, reinhard or none [filmic]")->group("Picture");
+    c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Picture");
+    c.add_flag("--denoise", o.denoise, "Denoise with a trained network; an EXR keeps the noisy picture as noisy.*")->group("Picture");
+    c.add_option("--model", o.model, "The network of --denoise (.safetensors)")->type_name("FILE")->group("Picture");
+    c.add_flag("--list-tf", o.list_transfer, "List the presets")->group("Volume");
     c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Device");
+    add_scene_options(c, o);
 }
 
 Scene scene_of(const RenderOptions& o) {

@@ -29,6 +29,9 @@ struct RenderOptions {
     DeviceOptions devices;
 };
 
+/// The options that say what is seen: volume, transfer function, camera, light, size, samples. `device` options too.
+void add_scene_options(CLI::App& command, RenderOptions& options);
+/// Those and what becomes of the picture.
 void add_render_options(CLI::App& command, RenderOptions& options);
 
 /// The scene that the options ask for: that of the scene file when the input is one, else the defaults; then every option that was given.

@@ -16,6 +16,10 @@ struct PairsFolder {
     std::vector<PairView> views;
 };
 
+/// Names of a folder's frames.
+std::string noisy_name(int view, int frame);
+std::string reference_name(int view);
+
 /// Reads DIR/pairs.json and checks that all its frames are there (not their pixels). Throws Error{input}: no such file, not complete,
 /// empty.
 PairsFolder read_pairs(const std::string& folder);
