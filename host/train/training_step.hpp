@@ -27,7 +27,6 @@ struct StepConfig {
     int micro_batch = 0; ///< patches on the device at once; 0: what memory allows (the same bits for any)
     double beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8;
     double clip_norm = 0; ///< greatest L2 norm of a step's gradient, 0: not clipped
-    bool clblast = false; ///< convolutions by im2col and CLBlast instead of clvr's own kernels
 };
 
 /// Parameters (order of Model::flat) and the moments of Adam after `step` steps.

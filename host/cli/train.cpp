@@ -1,0 +1,135 @@
+// clvr train: folders of pairs to a model.
+#include "host/cli/commands.hpp"
+#include "host/cli/device_options.hpp"
+#include "host/cli/interrupt.hpp"
+#include "host/cli/progress_bar.hpp"
+#include "host/io/atomic_file.hpp"
+#include "host/io/model_file.hpp"
+#include "host/train/trainer.hpp"
+#include "runtime/error.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace clvr {
+
+namespace {
+
+struct Options {
+    std::vector<std::string> folders, channels = reference_channels();
+    std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant";
+    TrainerConfig trainer;
+    int hidden = 20, kernel = 5;
+    bool resume = false, no_augment = false, plain = false;
+    DeviceOptions device;
+};
+
+Loss loss_of(const Options& o) {
+    if (o.target == "noisy") return Loss::noisy;
+    if (o.target != "reference") throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected reference or noisy", o.target), "--target");
+    const std::pair<const char*, Loss> losses[] = {
+        {"shifted-gamma", Loss::shifted_gamma}, {"reference", Loss::reference}, {"smape", Loss::smape}, {"relative-l2", Loss::relative_l2}};
+    for (const auto& [name, loss] : losses)
+        if (o.loss == name) return loss;
+    throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected shifted-gamma, reference, smape or relative-l2", o.loss), "--loss");
+}
+
+Model start_of(const Options& o) {
+    if (!o.init.empty()) return read_model(o.init);
+    Model m;
+    m.channels = o.channels;
+    m.hidden = o.hidden;
+    m.kernel = o.kernel;
+    if (!o.plain) {
+        m.exposure = true;
+        m.albedo_floor = 1.0f / 32;
+        m.opacity_weight = true;
+    }
+    if (m.hidden < 1 || m.hidden > 256) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 256", m.hidden), "--hidden");
+    if (m.kernel < 1 || m.kernel > 15 || m.kernel % 2 == 0)
+        throw Error(ErrorKind::usage, fmt::format("is {}; expected an odd number, 1 to 15", m.kernel), "--kernel");
+    initialise(m, o.trainer.seed);
+    return m;
+}
+
+void check(const Options& o) {
+    const auto range = [](const char* name, double value, double low, double high) {
+        if (!(value >= low && value <= high))
+            throw Error(ErrorKind::usage, fmt::format("is {}; expected {} to {}", value, low, high), name);
+    };
+    if (o.folders.empty()) throw Error(ErrorKind::usage, "no folder given: name one that `clvr pairs` made", "clvr train");
+    if (o.output.empty()) throw Error(ErrorKind::usage, "no output given: add -o model.safetensors", "clvr train");
+    range("--epochs", o.trainer.epochs, 1, 1e6);
+    range("--batch", o.trainer.step.batch, 1, 65536);
+    range("--patch", o.trainer.step.patch, 1, 4096);
+    range("--patches-per-image", o.trainer.patches_per_image, 1, 1e6);
+    range("--micro-batch", o.trainer.step.micro_batch, 0, 65536);
+    range("--lr", o.trainer.learning_rate, 1e-12, 10);
+    range("--clip-norm", o.trainer.step.clip_norm, 0, 1e12);
+    if (o.schedule != "constant" && o.schedule != "cosine")
+        throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected constant or cosine", o.schedule), "--schedule");
+}
+
+void train(Options o) {
+    check(o);
+    o.trainer.step.loss = loss_of(o);
+    o.trainer.cosine = o.schedule == "cosine";
+    o.trainer.augment = !o.no_augment;
+    check_writable(o.output);
+    const Model model = start_of(o);
+    const std::atomic<bool>& interrupted = catch_interrupts();
+    Device device = open_device(o.device);
+    Trainer trainer(device, model, o.trainer, o.folders, o.validate, o.output, o.resume);
+    bool finished = false;
+    {
+        ProgressBar bar("training", false);
+        finished = trainer.run(interrupted, [&](const TrainerProgress& p) {
+            std::string note = fmt::format("epoch {}/{}, loss {:.5f}", p.epoch, o.trainer.epochs, p.loss);
+            if (p.validation > 0) note += fmt::format(", {:.2f} dB", p.validation);
+            bar.update(p.done, note);
+        });
+    }
+    print_profiles(o.device, {device});
+    if (!trainer.records().empty()) {
+        const EpochRecord& last = trainer.records().back();
+        spdlog::info("{} epochs, loss {:.6f}{}", trainer.records().size(), last.loss,
+                     last.validation > 0 ? fmt::format(", validation {:.2f} dB", last.validation) : "");
+    }
+    if (!finished) throw Error(ErrorKind::interrupted, "interrupted; saved, go on with --resume");
+}
+
+} // namespace
+
+void add_train_command(CLI::App& app) {
+    CLI::App* c = app.add_subcommand("train", "Train a denoiser on folders that `clvr pairs` made");
+    auto o = std::make_shared<Options>();
+    TrainerConfig& t = o->trainer;
+    c->add_option("DIR", o->folders, "Folders of training pairs");
+    c->add_option("-o,--output", o->output, "Model to write (.safetensors); beside it .last.safetensors, .checkpoint and .csv")
+        ->type_name("MODEL");
+    c->add_option("--validate", o->validate, "Folder of test pairs: the best model on its frames is kept")->type_name("DIR");
+    c->add_flag("--resume", o->resume, "Go on from the checkpoint: the same bits as without the interruption");
+    c->add_option("--init", o->init, "Begin with this model's weights and settings")->type_name("MODEL");
+    c->add_option("--epochs", t.epochs, "[200]")->group("Training");
+    c->add_option("--batch", t.step.batch, "Patches a step [128]")->group("Training");
+    c->add_option("--patch", t.step.patch, "Width and height of a patch [256]")->group("Training");
+    c->add_option("--patches-per-image", t.patches_per_image, "Patches of each view an epoch [50]")->group("Training");
+    c->add_option("--lr", t.learning_rate, "Learning rate of Adam [0.0001]")->group("Training");
+    c->add_option("--schedule", o->schedule, "Of the learning rate: constant or cosine [constant]")->group("Training");
+    c->add_option("--clip-norm", t.step.clip_norm, "Greatest norm of a gradient; 0: not clipped [0]")->group("Training");
+    c->add_option("--loss", o->loss, "shifted-gamma, reference, smape or relative-l2 [shifted-gamma]")->group("Training");
+    c->add_option("--target", o->target, "reference, or noisy: another noisy frame of the view [reference]")->group("Training");
+    c->add_flag("--no-augment", o->no_augment, "Without the 8 dihedral transforms")->group("Training");
+    c->add_option("--seed", t.seed, "Of initialisation and patches [0]")->group("Training");
+    c->add_option("--micro-batch", t.step.micro_batch, "Patches on the device at once; 0: what fits [0]")->group("Training");
+    c->add_option("--channels", o->channels, "Input channels by their names in frames [R G B albedo normal depth]")
+        ->delimiter(',')
+        ->group("Model");
+    c->add_option("--hidden", o->hidden, "Hidden channels [20]")->group("Model");
+    c->add_option("--kernel", o->kernel, "Size of the convolutions [5]")->group("Model");
+    c->add_flag("--plain", o->plain, "Without exposure, albedo floor and opacity weights: the reference's preprocessing")->group("Model");
+    add_device_options(*c, o->device);
+    c->callback([o] { train(*o); });
+}
+
+} // namespace clvr
