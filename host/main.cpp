@@ -46,6 +46,7 @@ int run(int argc, char** argv) {
     clvr::add_render_command(app);
     clvr::add_denoise_command(app);
     clvr::add_pairs_command(app);
+    clvr::add_compare_command(app);
     clvr::add_train_command(app);
     try {
         app.parse(argc, argv);

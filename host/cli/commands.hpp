@@ -10,6 +10,7 @@ void add_info_command(CLI::App& app);    // info.cpp
 void add_render_command(CLI::App& app);  // render.cpp
 void add_denoise_command(CLI::App& app); // denoise.cpp
 void add_pairs_command(CLI::App& app);   // pairs.cpp
+void add_compare_command(CLI::App& app); // compare.cpp
 void add_train_command(CLI::App& app);   // train.cpp
 
 } // namespace clvr

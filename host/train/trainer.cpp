@@ -111,7 +111,7 @@ struct Trainer::State {
         write_checkpoint(checkpoint, step.model(), stem + ".checkpoint");
     }
 
-    /// Adds the losses of the steps since the last time; the number of the first one that is NaN, or -1.
+    /// Adds the losses of the steps since the last time; the number of the first one that is NaN (or that left weights that are), or -1.
     std::int64_t collect(std::int64_t first_step, double& recent) {
         const std::vector<double> losses = step.take_losses();
         for (std::size_t k = 0; k < losses.size(); ++k) {
@@ -119,7 +119,10 @@ struct Trainer::State {
             checkpoint.loss_sum += losses[k];
             recent = losses[k];
         }
-        return -1;
+        // Kernels turn NaN into numbers where they clamp, so a loss can look well over weights that are lost.
+        const std::vector<float> weights = step.state().parameters;
+        const bool lost = std::any_of(weights.begin(), weights.end(), [](float w) { return !std::isfinite(w); });
+        return lost ? first_step + static_cast<std::int64_t>(losses.size()) : -1;
     }
 };
 

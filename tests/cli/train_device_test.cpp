@@ -1,0 +1,140 @@
+// `clvr pairs`, `train`, `denoise` and `compare` as a user sees them.
+#include "host/io/frame_file.hpp"
+#include "tests/cli/program.hpp"
+#include "tests/runtime/scoped.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <thread>
+
+namespace clvr {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Runs in a folder with a small ball and its pairs.
+class Learning : public testing::Test {
+protected:
+    Learning() {
+        std::string voxels;
+        for (int z = 0; z < 16; ++z)
+            for (int y = 0; y < 20; ++y)
+                for (int x = 0; x < 24; ++x) {
+                    const double dx = (x - 11.5) / 10, dy = (y - 9.5) / 8, dz = (z - 7.5) / 6;
+                    voxels += static_cast<char>(std::clamp(400 * (1 - dx * dx - dy * dy - dz * dz), 0.0, 200.0));
+                }
+        folder.write("ball_24x20x16_uint8.raw", voxels);
+        folder.write("ball_24x20x16_uint8.json", R"({"spacing": [1, 1, 1]})");
+    }
+    std::string path(const std::string& name) const { return (folder.path() / name).string(); }
+    bool exists(const std::string& name) const { return std::filesystem::exists(folder.path() / name); }
+    Outcome run(const std::vector<std::string>& words) const { return Child(words, {}, folder.path()).wait(); }
+    Outcome pairs(const std::string& to, const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> words{
+            "pairs", path("ball_24x20x16_uint8.raw"), "-o", path(to), "--views", "3", "--size", "24x20", "--reference-spp", "4"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run(words);
+    }
+    std::string hash(const std::string& name) const { return pixel_hash(read_exr(path(name))); }
+    static std::string text(const std::string& file) {
+        std::ifstream in(file, std::ios::binary);
+        return {std::istreambuf_iterator<char>(in), {}};
+    }
+
+    TemporaryFolder folder;
+};
+
+TEST_F(Learning, PairsAreIndependentAndResumable) {
+    const Outcome o = pairs("a", {"--noisy-frames", "2"});
+    ASSERT_EQ(o.exit_code, 0) << o.err;
+    const Frame noisy = read_exr(path("a/view_0001_noisy_0.exr")), reference = read_exr(path("a/view_0001_reference.exr"));
+    for (const char* name : {"R", "A", "albedo.R", "normal.Y", "depth.Z", "opacity.A"}) EXPECT_TRUE(noisy.has(name)) << name;
+    EXPECT_TRUE(reference.has("R"));
+    EXPECT_FALSE(reference.has("albedo.R"));
+    EXPECT_EQ(reference.attributes.at("clvr.spp"), "4");
+    const std::string first = hash("a/view_0001_noisy_0.exr"), second = hash("a/view_0001_noisy_1.exr");
+    EXPECT_NE(first, second);
+    EXPECT_NE(noisy.at("R"), read_exr(path("a/view_0001_noisy_1.exr")).at("R"));
+    EXPECT_EQ(noisy.at("albedo.R"), read_exr(path("a/view_0001_noisy_1.exr")).at("albedo.R"));
+
+    std::filesystem::remove(path("a/view_0001_noisy_0.exr"));
+    EXPECT_EQ(run({"train", path("a"), "-o", path("m.safetensors")}).exit_code, 3); // not complete
+    ASSERT_EQ(pairs("a", {"--noisy-frames", "2"}).exit_code, 0);
+    EXPECT_EQ(hash("a/view_0001_noisy_0.exr"), first);
+
+    const Outcome other = pairs("a", {"--noisy-frames", "2", "--spp", "3"});
+    EXPECT_EQ(other.exit_code, 3);
+    EXPECT_THAT(other.err, HasSubstr("other settings"));
+    ASSERT_EQ(run({"pairs", path("a/pairs.json"), "-o", path("again")}).exit_code, 0);
+    EXPECT_EQ(hash("again/view_0001_noisy_1.exr"), second);
+    ASSERT_EQ(pairs("test", {"--split", "test"}).exit_code, 0);
+    EXPECT_NE(read_exr(path("test/view_0001_noisy_0.exr")).at("albedo.R"), noisy.at("albedo.R")); // other views
+}
+
+TEST_F(Learning, TrainsDenoisesAndCompares) {
+    ASSERT_EQ(pairs("a").exit_code, 0);
+    const std::vector<std::string> train{"train", path("a"),  "-o", path("m.safetensors"), "--patch", "16",         "--batch",
+                                         "4",     "--epochs", "3",  "--patches-per-image", "6",       "--validate", path("a")};
+    const Outcome o = run(train);
+    ASSERT_EQ(o.exit_code, 0) << o.err;
+    const std::string model = text(path("m.safetensors"));
+    for (const char* name : {"m.last.safetensors", "m.checkpoint", "m.csv"}) EXPECT_TRUE(exists(name)) << name;
+
+    const Outcome d =
+        run({"denoise", path("a/view_0000_noisy_0.exr"), "--model", path("m.safetensors"), "-o", path("d.exr"), "--show", "guides,levels"});
+    ASSERT_EQ(d.exit_code, 0) << d.err;
+    EXPECT_TRUE(exists("d.guide.1.png") && exists("d.level3.png"));
+    EXPECT_EQ(read_exr(path("d.exr")).at("noisy.R"), read_exr(path("a/view_0000_noisy_0.exr")).at("R"));
+    const Outcome c = run({"compare", path("d.exr"), path("a/view_0000_reference.exr"), "--json"});
+    ASSERT_EQ(c.exit_code, 0) << c.err;
+    EXPECT_THAT(c.out, AllOf(HasSubstr("\"psnr\""), HasSubstr("\"ssim\"")));
+    EXPECT_EQ(run({"compare", path("d.exr"), path("none.exr")}).exit_code, 3);
+
+    const Outcome r = run({"render", path("ball_24x20x16_uint8.raw"), "--size", "30x26", "--spp", "1", "--denoise", "--model",
+                           path("m.safetensors"), "-o", path("r.exr"), "-o", path("r.png")});
+    ASSERT_EQ(r.exit_code, 0) << r.err;
+    EXPECT_TRUE(read_exr(path("r.exr")).has("noisy.G"));
+    EXPECT_TRUE(exists("r.png"));
+
+    // SIGKILL at some moment, then --resume: the same model, byte for byte.
+    std::vector<std::string> again = train;
+    again[3] = path("k.safetensors");
+    Child child(again, {}, folder.path());
+    for (int tries = 0; tries < 1000 && !exists("k.checkpoint"); ++tries) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    kill(child.pid(), SIGKILL);
+    child.wait();
+    ASSERT_TRUE(exists("k.checkpoint"));
+    again.push_back("--resume");
+    const Outcome resumed = run(again);
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_EQ(text(path("k.safetensors")), model);
+}
+
+TEST_F(Learning, RefusesWithOneLine) {
+    const std::pair<std::vector<std::string>, int> cases[] = {
+        {{"pairs", path("ball_24x20x16_uint8.raw")}, 2},
+        {{"pairs", path("ball_24x20x16_uint8.raw"), "-o", path("p"), "--views", "0"}, 2},
+        {{"pairs", path("ball_24x20x16_uint8.raw"), "-o", path("p"), "--reference-spp", "0"}, 2},
+        {{"pairs", path("ball_24x20x16_uint8.raw"), "-o", path("p"), "--zoom-range", "2,1"}, 2},
+        {{"train", "-o", path("m.safetensors")}, 2},
+        {{"train", path("none"), "-o", path("m.safetensors")}, 3},
+        {{"train", path("none"), "-o", path("m.safetensors"), "--loss", "huber"}, 2},
+        {{"denoise", path("none.exr"), "-o", path("d.png")}, 2},
+        {{"denoise", path("none.exr"), "-o", path("d.png"), "--model", path("none.safetensors")}, 3},
+        {{"denoise", path("none.exr"), "-o", path("d.png"), "--model", path("ball_24x20x16_uint8.raw")}, 3},
+        {{"render", path("ball_24x20x16_uint8.raw"), "-o", path("d.png"), "--denoise"}, 2},
+    };
+    for (const auto& [words, code] : cases) {
+        const Outcome o = run(words);
+        EXPECT_EQ(o.exit_code, code) << words[0] << ": " << o.err;
+        EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+    }
+    EXPECT_FALSE(exists("d.png"));
+}
+
+} // namespace
+} // namespace clvr

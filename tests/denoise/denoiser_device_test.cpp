@@ -1,0 +1,210 @@
+// Whole frames through the denoiser: the same bits for every shape of the work, what it does with odd input, SPEC section 13's properties.
+#include "host/denoise/denoiser.hpp"
+#include "runtime/error.hpp"
+#include "tests/denoise/batches.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+namespace clvr::testing {
+namespace {
+
+/// Channels of a noisy rendering, with smooth and hard features.
+Frame noisy_frame(int width, int height) {
+    Frame f;
+    f.width = width, f.height = height;
+    std::uint32_t k = 17;
+    const auto noise = [&] {
+        k = k * 1664525u + 1013904223u;
+        return static_cast<float>(k >> 8) / (1 << 24);
+    };
+    for (const auto& name : reference_channels()) f.channel(name);
+    f.channel("A");
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const std::size_t i = static_cast<std::size_t>(y) * width + x;
+            const float disc =
+                std::hypot(x - width / 2.0f, y - height / 2.0f) < 0.4f * static_cast<float>(std::min(width, height)) ? 1.0f : 0.0f;
+            f.channel("A")[i] = disc;
+            for (const char* c : {"R", "G", "B"}) f.channel(c)[i] = disc * 2 * noise() * noise();
+            for (const char* c : {"albedo.R", "albedo.G", "albedo.B"}) f.channel(c)[i] = disc > 0 ? 0.3f + 0.5f * (x / 7 % 2) : 1;
+            for (const char* c : {"normal.X", "normal.Y", "normal.Z"}) f.channel(c)[i] = disc * std::sin(0.1f * static_cast<float>(x + y));
+            f.channel("depth.Z")[i] = disc > 0 ? static_cast<float>(y) / static_cast<float>(height) : 1;
+        }
+    return f;
+}
+
+Model test_model(bool preprocessing = true) {
+    Model m;
+    m.channels = reference_channels();
+    m.exposure = m.opacity_weight = preprocessing;
+    m.albedo_floor = preprocessing ? 1.0f / 32 : 0x1p-20f;
+    initialise(m, 5);
+    return m;
+}
+
+std::string denoised_hash(const std::map<std::string, int>& tunables, const Frame& frame, const Model& model, std::size_t memory = 0) {
+    Device device = test_device();
+    for (const auto& [name, value] : tunables) device.set_tunable(name, value);
+    if (memory > 0) device.set_memory_limit(memory);
+    return pixel_hash(Denoiser(device, model).denoise(frame));
+}
+
+TEST(Denoiser, GivesTheSameBitsForEveryTunable) {
+    const Frame frame = noisy_frame(150, 67);
+    const std::string hash = denoised_hash({}, frame, test_model());
+    const std::map<std::string, int> variants[] = {{{"conv_width", 1}, {"conv_vectors", 2}, {"conv_group_x", 8}},
+                                                   {{"conv_width", 8}, {"conv_vectors", 3}},
+                                                   {{"conv_width", 4}, {"conv_block", 4}},
+                                                   {{"conv_group_y", 7}, {"pixel_group", 3}},
+                                                   {{"splat_bins", 1}},
+                                                   {{"splat_bins", 7}}};
+    for (const auto& tunables : variants)
+        EXPECT_EQ(denoised_hash(tunables, frame, test_model()), hash) << tunables.begin()->first << " " << tunables.begin()->second;
+}
+
+TEST(Denoiser, GivesTheSameBitsInTiles) {
+    const Frame frame = noisy_frame(300, 421);
+    const std::string hash = denoised_hash({}, frame, test_model());
+    EXPECT_EQ(denoised_hash({{"denoise_mib", 30}}, frame, test_model()), hash); // whole rows
+    EXPECT_EQ(denoised_hash({{"denoise_mib", 7}}, frame, test_model()), hash);  // parts of rows
+    EXPECT_EQ(denoised_hash({}, frame, test_model(), std::size_t{20} << 20), hash);
+}
+
+TEST(Denoiser, TilesOfOddLevels) {
+    Model model = test_model();
+    model.levels = {{3, 5}, {6, 64}, {10, 256}};
+    initialise(model, 2);
+    const Frame frame = noisy_frame(131, 257);
+    EXPECT_EQ(denoised_hash({{"denoise_mib", 8}}, frame, model), denoised_hash({}, frame, model));
+}
+
+TEST(Denoiser, TakesAnySize) {
+    for (const auto& [width, height] : {std::pair(1, 1), {1, 40}, {17, 3}, {64, 64}, {81, 33}}) {
+        Device device = test_device();
+        const Frame done = Denoiser(device, test_model()).denoise(noisy_frame(width, height));
+        EXPECT_EQ(done.at("R").size(), static_cast<std::size_t>(width) * height);
+        for (const char* c : {"R", "G", "B"})
+            for (const float v : done.at(c)) ASSERT_TRUE(std::isfinite(v) && v >= 0);
+        EXPECT_TRUE(done.has("noisy.R"));
+    }
+}
+
+TEST(Denoiser, LeavesAConstantPictureConstant) {
+    Frame frame = noisy_frame(90, 50);
+    for (const char* c : {"R", "G", "B"}) std::fill(frame.channel(c).begin(), frame.channel(c).end(), 0.75f);
+    for (const char* c : {"albedo.R", "albedo.G", "albedo.B"}) std::fill(frame.channel(c).begin(), frame.channel(c).end(), 0.5f);
+    std::fill(frame.channel("A").begin(), frame.channel("A").end(), 1.0f);
+    Device device = test_device();
+    const Frame done = Denoiser(device, test_model()).denoise(frame);
+    for (const float v : done.at("G")) ASSERT_NEAR(v, 0.75, 2e-6);
+}
+
+TEST(Denoiser, IsLinearInRadianceWhenTheGuidesAreFixed) {
+    // The network sees tone-mapped beauty: with channels that are features alone, the guides do not depend on it.
+    Model model;
+    model.channels = {"albedo.R", "albedo.G", "albedo.B", "depth.Z"};
+    initialise(model, 9);
+    Frame frame = noisy_frame(70, 45), doubled = frame;
+    for (const char* c : {"R", "G", "B"})
+        for (float& v : doubled.channel(c)) v *= 2;
+    Device device = test_device();
+    Denoiser denoiser(device, model);
+    const Frame a = denoiser.denoise(frame), b = denoiser.denoise(doubled);
+    for (std::size_t i = 0; i < a.pixels(); ++i) ASSERT_EQ(2 * a.at("B")[i], b.at("B")[i]);
+}
+
+TEST(Denoiser, RepairsWhatIsNotFinite) {
+    Frame frame = noisy_frame(60, 60);
+    frame.channel("R")[30 * 60 + 30] = std::numeric_limits<float>::quiet_NaN();
+    frame.channel("depth.Z")[31 * 60 + 30] = std::numeric_limits<float>::infinity();
+    Device device = test_device();
+    Denoiser denoiser(device, test_model());
+    const Frame done = denoiser.denoise(frame);
+    EXPECT_EQ(denoiser.repaired(), 2u);
+    for (const float v : done.at("R")) ASSERT_TRUE(std::isfinite(v));
+}
+
+TEST(Denoiser, NeverSeesTheBackground) {
+    Frame frame = noisy_frame(60, 44), laid = frame;
+    for (const char* c : {"R", "G", "B"}) {
+        laid.channel(std::string("background.") + c).assign(frame.pixels(), 0.5f);
+        for (std::size_t i = 0; i < frame.pixels(); ++i) laid.channel(c)[i] += (1 - frame.at("A")[i]) * 0.5f;
+    }
+    Device device = test_device();
+    Denoiser denoiser(device, test_model());
+    const Frame a = denoiser.denoise(frame), b = denoiser.denoise(laid);
+    for (std::size_t i = 0; i < frame.pixels(); ++i) ASSERT_NEAR(a.at("R")[i] + (1 - frame.at("A")[i]) * 0.5f, b.at("R")[i], 1e-6);
+}
+
+TEST(Denoiser, NamesTheChannelThatIsMissing) {
+    Frame frame = noisy_frame(20, 20);
+    frame.channels.erase("normal.Y");
+    Device device = test_device();
+    try {
+        Denoiser(device, test_model()).denoise(frame);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::input);
+        EXPECT_THAT(e.what(), ::testing::AllOf(::testing::HasSubstr("lacks channel normal.Y"), ::testing::HasSubstr("albedo.B")));
+    }
+}
+
+TEST(Denoiser, ShowsWhatTheNetworkMade) {
+    Device device = test_device();
+    const Frame frame = noisy_frame(40, 30);
+    const Frame done = Denoiser(device, test_model()).denoise(frame, {true, true, true});
+    for (std::size_t i = 0; i < frame.pixels(); ++i) {
+        const float w1 = done.at("weight.1")[i], w2 = done.at("weight.2")[i];
+        ASSERT_TRUE(w1 > 0 && w1 < 1 && done.at("guide.3")[i] > 0 && done.at("guide.3")[i] < 1);
+        const float blended = w1 * done.at("level1.G")[i] + w2 * done.at("level2.G")[i] + (1 - w1 - w2) * done.at("level3.G")[i];
+        ASSERT_NEAR(done.at("G")[i], std::max(blended, 0.0f), 1e-5);
+    }
+}
+
+/// The dihedral transforms of the crops, SPEC section 9.
+TEST(Assemble, TurnsAsTheGoldenVectorsDo) {
+    const Golden golden("augment");
+    const std::vector<double> image = golden["image"]; // [3, 4, 2]
+    Model model;
+    model.channels = {"R", "G", "B"};
+    initialise(model, 1);
+    const ChannelPlan plan(model, false);
+    for (const int lanes : {1, 16}) {
+        Device device = test_device();
+        device.set_tunable("conv_width", lanes);
+        std::vector<float> planes;
+        for (int c = 0; c < 3; ++c)
+            for (int i = 0; i < 12; ++i) planes.push_back(static_cast<float>(image[2 * i + c % 2]));
+        const Buffer source = device.upload(planes, "source");
+        for (int k = 0; k < 8; ++k) {
+            const std::vector<double> want = golden["aug" + std::to_string(k)];
+            const std::vector<std::int64_t> shape = golden.shape("aug" + std::to_string(k));
+            NeuralGrid grid(device, model, {static_cast<int>(shape[1]), static_cast<int>(shape[0])});
+            grid.assemble(source, 4, 3, plan.params(1), 0, 0, k, 0);
+            const auto pixels = device.download<shared::float4>(grid.splatted(), 12);
+            for (int i = 0; i < 12; ++i) {
+                EXPECT_EQ(pixels[i].x, static_cast<float>(want[2 * i])) << k;
+                EXPECT_EQ(pixels[i].y, static_cast<float>(want[2 * i + 1])) << k;
+            }
+        }
+    }
+}
+
+TEST(Assemble, TonemapMeetsTheGoldenVectors) {
+    const Golden golden("tonemap");
+    const std::vector<float> x = golden.floats("x");
+    Model model;
+    model.channels = {"R", "G", "B"};
+    initialise(model, 1);
+    Device device = test_device();
+    std::vector<float> planes;
+    for (int c = 0; c < 3; ++c) planes.insert(planes.end(), x.begin(), x.end());
+    NeuralGrid grid(device, model, {static_cast<int>(x.size()), 1});
+    grid.assemble(device.upload(planes, "source"), static_cast<int>(x.size()), 1, ChannelPlan(model, false).params(1), 0, 0, 0, 0);
+    golden.expect_near("y", interleaved(grid, grid.input(), 3, 0, 1));
+}
+
+} // namespace
+} // namespace clvr::testing
