@@ -1,7 +1,7 @@
 // A scene and a volume to a frame, on one device or several: the same bits either way.
 #pragma once
-#include "host/render/environment.hpp"
 #include "host/frame/frame.hpp"
+#include "host/render/environment.hpp"
 #include "host/render/scene.hpp"
 #include "host/volume/bricks.hpp"
 #include "runtime/device.hpp"

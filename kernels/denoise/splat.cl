@@ -34,13 +34,15 @@ __kernel void splat(__constant DenoiseParams* p, int level_number, int planes, _
         y0 = y0 > 0 ? y0 : 0, y1 = y1 < p->height ? y1 : p->height;
         x0 = x0 > 0 ? x0 : 0, x1 = x1 < p->width ? x1 : p->width;
         for (int y = y0; y < y1; ++y) {
-            vfloat ty = tent_of_pixel(level, (vint)(y)).t, wy = above < row ? ty : 1.0f - ty;
+            Tent ty = tent_of_pixel(level, (vint)(y));
+            vfloat wy = above < row ? ty.t : ty.rest;
             for (int x = x0; x < x1; x += CLVR_WIDTH) {
-                vfloat tx = tent_of_pixel(level, (vint)(x) + v_iota).t, w = wy * (left < column ? tx : 1.0f - tx);
+                Tent tx = tent_of_pixel(level, (vint)(x) + v_iota);
+                vfloat w = wy * (left < column ? tx.t : tx.rest);
                 Tent depth = tent_of_guide(p, level, v_load(guides + y * p->row + x));
                 int to[CLVR_WIDTH];
                 float lower[CLVR_WIDTH], upper[CLVR_WIDTH];
-                v_store(depth.lower - first, to), v_store(w * (1.0f - depth.t), lower), v_store(w * depth.t, upper);
+                v_store(depth.lower - first, to), v_store(w * depth.rest, lower), v_store(w * depth.t, upper);
                 for (int i = 0; i < CLVR_WIDTH && x + i < x1; ++i) {
                     if (!CLVR_WHOLE && (to[i] < -1 || to[i] >= CLVR_BINS)) continue;
                     float4 colour = splatted[y * p->width + x + i];

@@ -8,19 +8,19 @@ CLVR_SHARED_BEGIN
 
 /// A bilateral grid: `rows` x `columns` x `depth` cells, depth fastest, from cell `offset` of its image's cells on.
 typedef struct GridLevel {
-    uint offset;               ///< [cells]
-    int pixels, codes;         ///< sampling factors: pixels per cell (both ways), codes per cell
-    int rows, columns, depth;  ///< [cells]
+    uint offset;              ///< [cells]
+    int pixels, codes;        ///< sampling factors: pixels per cell (both ways), codes per cell
+    int rows, columns, depth; ///< [cells]
     float inverse_codes;
-    float slope;               ///< of the depth coordinate by the guide: DenoiseParams::guide_scale / codes
-    uint reciprocal;           ///< 2^32 / (2 pixels), rounded up: mul_hi by it divides by 2 pixels
-    float half_pixel;          ///< 1 / (2 pixels)
+    float slope;      ///< of the depth coordinate by the guide: DenoiseParams::guide_scale / codes
+    uint reciprocal;  ///< 2^32 / (2 pixels), rounded up: mul_hi by it divides by 2 pixels
+    float half_pixel; ///< 1 / (2 pixels)
 } GridLevel;
 CLVR_CHECK_SIZE(GridLevel, 40);
 
-/// Shapes of a batch of equal images. Planes (network input, hidden layer, guides and blending weights, output, target and their gradients) have a border
-/// of `pad` zeros: channel c of C, row y, column x of image n is float ((n C + c) plane + (y + pad) row + pad + x); right of the image, zeros
-/// up to the end of the row. Pixels (splatted colours and such) are float4 n width height + y width + x.
+/// Shapes of a batch of equal images. Planes (network input, hidden layer, guides and blending weights, output, target and their gradients)
+/// have a border of `pad` zeros: channel c of C, row y, column x of image n is float ((n C + c) plane + (y + pad) row + pad + x); right of
+/// the image, zeros up to the end of the row. Pixels (splatted colours and such) are float4 n width height + y width + x.
 typedef struct DenoiseParams {
     int width, height; ///< of each image [pixels]
     int row, plane;    ///< [floats]
