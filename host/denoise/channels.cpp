@@ -31,7 +31,7 @@ ChannelPlan::ChannelPlan(const Model& model, bool with_target)
     const auto add = [&](const std::string& name) {
         if (plane(name) < 0) planes_.push_back(name);
     };
-    if (weighted_) add("A");
+    if (weighted_) add("opacity.A"); // free of noise, which A of few paths is not
     for (const auto& name : model.channels) {
         add(name);
         const auto kind = is_radiance(name)               ? shared::CLVR_CHANNEL_RADIANCE
@@ -52,7 +52,7 @@ shared::SourceParams ChannelPlan::params(double exposure) const {
     shared::SourceParams p{};
     p.beauty = plane("R");
     p.albedo = demodulate_ ? plane("albedo.R") : -1;
-    p.opacity = weighted_ ? plane("A") : -1;
+    p.opacity = weighted_ ? plane("opacity.A") : -1;
     p.target = plane("target.R");
     p.channels = static_cast<int>(channels_.size());
     p.exposure = exposure_ ? static_cast<float>(exposure) : 1.0f;
@@ -104,6 +104,8 @@ std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const R
 
 double exposure_of(const Frame& frame) {
     constexpr int block = 16;
+    const char* const name = frame.has("opacity.A") ? "opacity.A" : "A";
+    const std::vector<float>* const opacities = frame.has(name) ? &frame.at(name) : nullptr;
     double sum = 0;
     int blocks = 0;
     for (int y0 = 0; y0 < frame.height; y0 += block)
@@ -116,7 +118,7 @@ double exposure_of(const Frame& frame) {
                     const double l = 0.2126 * beauty_without_background(frame, "R", i) + 0.7152 * beauty_without_background(frame, "G", i) +
                                      0.0722 * beauty_without_background(frame, "B", i);
                     if (std::isfinite(l)) luminance += std::max(l, 0.0);
-                    const double a = frame.has("A") ? frame.at("A")[i] : 1;
+                    const double a = opacities ? (*opacities)[i] : 1;
                     if (std::isfinite(a)) opacity += a;
                 }
             if (opacity > n / 64.0 && luminance > 0) sum += std::log2(luminance / n), ++blocks;

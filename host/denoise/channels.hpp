@@ -45,7 +45,7 @@ private:
 };
 
 /// DESIGN.md "Denoiser": 0.18 / exp2(mean log2 luminance), the mean over blocks of 16x16 pixels whose mean opacity is above 1/64 and whose
-/// luminance is above 0; 1 where there is none. Reads the whole frame: R G B less background, A.
+/// luminance is above 0; 1 where there is none. Reads the whole frame: R G B less background, opacity.A (else A).
 double exposure_of(const Frame& frame);
 
 /// The frame's beauty at pixel i less the background seen through it.

@@ -25,7 +25,7 @@ struct Model {
     // Preprocessing beyond SPEC.md; absent from a file means these values.
     bool exposure = false;                    ///< radiance scaled by 0.18 / exp2(mean log2 luminance), clamped at 32 (DESIGN.md "Denoiser")
     float albedo_floor = 0x1p-20f;            ///< radiance is divided and remultiplied by max(albedo, this)
-    bool opacity_weight = false;              ///< a pixel counts in the splat as much as it is opaque, and the output is times opacity
+    bool opacity_weight = false;              ///< a pixel counts in the splat by its opacity.A, and the output is times that
     std::map<std::string, std::string> notes; ///< further metadata ("clvr.training", ...): how it was made; kept when the file is copied
 
     std::vector<float> conv1_weight; ///< [hidden, channels, kernel, kernel]

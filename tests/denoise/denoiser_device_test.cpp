@@ -26,7 +26,7 @@ Frame noisy_frame(int width, int height) {
             const std::size_t i = static_cast<std::size_t>(y) * width + x;
             const float disc =
                 std::hypot(x - width / 2.0f, y - height / 2.0f) < 0.4f * static_cast<float>(std::min(width, height)) ? 1.0f : 0.0f;
-            f.channel("A")[i] = disc;
+            f.channel("A")[i] = f.channel("opacity.A")[i] = disc;
             for (const char* c : {"R", "G", "B"}) f.channel(c)[i] = disc * 2 * noise() * noise();
             for (const char* c : {"albedo.R", "albedo.G", "albedo.B"}) f.channel(c)[i] = disc > 0 ? 0.3f + 0.5f * (x / 7 % 2) : 1;
             for (const char* c : {"normal.X", "normal.Y", "normal.Z"}) f.channel(c)[i] = disc * std::sin(0.1f * static_cast<float>(x + y));
@@ -95,7 +95,7 @@ TEST(Denoiser, LeavesAConstantPictureConstant) {
     Frame frame = noisy_frame(90, 50);
     for (const char* c : {"R", "G", "B"}) std::fill(frame.channel(c).begin(), frame.channel(c).end(), 0.75f);
     for (const char* c : {"albedo.R", "albedo.G", "albedo.B"}) std::fill(frame.channel(c).begin(), frame.channel(c).end(), 0.5f);
-    std::fill(frame.channel("A").begin(), frame.channel("A").end(), 1.0f);
+    for (const char* c : {"A", "opacity.A"}) std::fill(frame.channel(c).begin(), frame.channel(c).end(), 1.0f);
     Device device = test_device();
     const Frame done = Denoiser(device, test_model()).denoise(frame);
     for (const float v : done.at("G")) ASSERT_NEAR(v, 0.75, 2e-6);

@@ -33,7 +33,7 @@ std::pair<Frame, Frame> pair_of(int size, std::uint32_t seed, float amount = 1) 
     noisy.width = noisy.height = clean.width = clean.height = size;
     for (const auto& name : reference_channels()) noisy.channel(name);
     for (const char* c : {"R", "G", "B"}) clean.channel(c);
-    noisy.channel("A").assign(noisy.pixels(), 1.0f);
+    noisy.channel("opacity.A").assign(noisy.pixels(), 1.0f);
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
             const std::size_t i = static_cast<std::size_t>(y) * size + x;
