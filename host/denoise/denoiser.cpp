@@ -139,6 +139,10 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
             s.denoise_tile(frame, {x, y, std::min(tile.width, frame.width - x), std::min(tile.height, frame.height - y)}, params,
                            view.levels, results, outputs);
 
+    if (frame.has("opacity.A") && frame.has("A")) { // the path's alpha is as noisy as its colour
+        done.channels["noisy.A"] = frame.at("A");
+        done.channels["A"] = frame.at("opacity.A");
+    }
     const std::vector<float>* opacity = frame.has("opacity.A") ? &frame.at("opacity.A") : frame.has("A") ? &frame.at("A") : nullptr;
     for (std::size_t c = 0; c < results.size(); ++c) {
         const auto background = frame.channels.find(std::string("background.") + colours[c % 3]);

@@ -88,6 +88,7 @@ TEST(Denoiser, TakesAnySize) {
         for (const char* c : {"R", "G", "B"})
             for (const float v : done.at(c)) ASSERT_TRUE(std::isfinite(v) && v >= 0);
         EXPECT_TRUE(done.has("noisy.R"));
+        EXPECT_EQ(done.at("A"), done.at("opacity.A"));
     }
 }
 
