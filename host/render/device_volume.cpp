@@ -36,7 +36,8 @@ int packet_width(const Device& device) {
 }
 
 BrickLayout device_layout(const Device& device, const Classified& c) {
-    return brick_layout(*c.voxels, *c.grid, c.majorants, device.tunable("brick_log2", 5), device.max_alloc_bytes());
+    return brick_layout(*c.voxels, *c.grid, c.majorants, device.tunable("brick_log2", brick_log2_edge(c.voxels->dims)),
+                        device.max_alloc_bytes());
 }
 
 DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& params) {

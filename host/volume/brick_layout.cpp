@@ -97,6 +97,11 @@ std::size_t BrickLayout::brick_voxels(std::size_t brick) const {
     return static_cast<std::size_t>(length[0]) * length[1] * length[2];
 }
 
+int brick_log2_edge(const Int3& dims) {
+    const bool thin = std::min({dims[0], dims[1], dims[2]}) < 16, large = 1.0 * dims[0] * dims[1] * dims[2] >= 4e6;
+    return thin && large ? 8 : 5;
+}
+
 BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
                          std::size_t max_pool_bytes) {
     BrickLayout layout;

@@ -48,7 +48,8 @@ std::vector<float> majorants(const MajorantGrid& grid, const TransferTable& tabl
 /// their interpolation and gradient touch: voxels edge*b-1 .. edge*b+edge+1, an apron of one voxel below and two above, cropped to the
 /// bases that the volume has; beyond the volume's border its border voxels repeat. Rows and slices are packed, x fastest. So a position's
 /// whole 4x4x4 neighbourhood lies in one brick. Edge 32 stores at most (35/32)^3 = 1.31 times the voxels; an axis of n < 16 voxels adds a
-/// factor of (n+2)/n instead.
+/// factor of (n+2)/n instead,
+/// so that thin volumes take larger bricks (brick_log2_edge).
 struct BrickLayout {
     int log2_edge = 4;
     Int3 bricks{1, 1, 1};
@@ -66,9 +67,13 @@ struct BrickLayout {
     std::size_t brick_voxels(std::size_t brick) const;
 };
 
+/// Edge of bricks where nothing else is asked: 32, or 256 in volumes of 4 Mvoxel and more with an axis of fewer than 16, so that they too
+/// store at most 1.35 times their voxels (down to an axis of 7).
+int brick_log2_edge(const Int3& dims);
+
 /// Lays out the bricks that are needed when cells with majorant > 0 are visible: those that a sample in such a cell, or a gradient tap one
 /// voxel away from it, can touch. The reach is a full voxel all around, so that a position that rounding puts on the far side of a cell's
-/// border is safe. `log2_edge` is 3 to 6. Pools are at most `max_pool_bytes` each. Throws Error{memory} when 8 pools do not hold it.
+/// border is safe. `log2_edge` is 3 to 8. Pools are at most `max_pool_bytes` each. Throws Error{memory} when 8 pools do not hold it.
 BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
                          std::size_t max_pool_bytes);
 

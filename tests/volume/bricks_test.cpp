@@ -65,7 +65,7 @@ TEST(Bricks, RoundTripVoxelByVoxel) {
         for (const Int3& dims : {Int3{1, 1, 1}, Int3{2, 2, 2}, Int3{1, 40, 40}, Int3{17, 18, 33}, Int3{65, 9, 2}, Int3{5, 1, 66}}) {
             const Voxels v = random_volume(random, type, dims);
             const MajorantGrid grid = majorant_grid(v);
-            for (const int log2_edge : {3, 4, 5, 6}) {
+            for (const int log2_edge : {3, 4, 5, 6, 8}) {
                 const BrickLayout layout = brick_layout(v, grid, std::vector<float>(grid.count(), 1), log2_edge, no_limit);
                 EXPECT_EQ(layout.present(), layout.offset.size());
                 EXPECT_EQ(layout.pools, 1);
@@ -77,7 +77,7 @@ TEST(Bricks, RoundTripVoxelByVoxel) {
 TEST(Bricks, AreStoredExactlyWhereASampleOrGradientTapCanReach) {
     Random random(2);
     for (const Int3& dims : {Int3{1, 1, 1}, Int3{70, 50, 40}, Int3{18, 35, 1}, Int3{33, 34, 49}})
-        for (const int log2_edge : {3, 4, 5, 6})
+        for (const int log2_edge : {3, 4, 5, 6, 8})
             for (const double share : {0.0, 0.02, 0.3, 1.0}) {
                 const Voxels v = random_volume(random, VoxelType::u8, dims);
                 const MajorantGrid grid = majorant_grid(v);
@@ -155,13 +155,14 @@ TEST(Bricks, OfAnInvisibleVolumeTakeNothing) {
 }
 
 TEST(Bricks, TakeAtMostAThirdMoreThanTheVoxels) {
-    for (const Int3& dims : {Int3{256, 256, 256}, Int3{162, 162, 162}, Int3{512, 512, 20}, Int3{2048, 2048, 16}, Int3{1024, 19, 257}}) {
+    for (const Int3& dims : {Int3{256, 256, 256}, Int3{162, 162, 162}, Int3{512, 512, 20}, Int3{2048, 2048, 16}, Int3{1024, 19, 257},
+                             Int3{1024, 15, 300}, Int3{10, 1000, 401}, Int3{1024, 1024, 7}}) {
         Voxels v;
         v.dims = dims;
         v.bytes.resize(v.count());
         ASSERT_GE(v.count(), 4000000u);
         const MajorantGrid grid = majorant_grid(v);
-        const BrickLayout layout = brick_layout(v, grid, std::vector<float>(grid.count(), 1), 5, no_limit);
+        const BrickLayout layout = brick_layout(v, grid, std::vector<float>(grid.count(), 1), brick_log2_edge(dims), no_limit);
         EXPECT_LE(static_cast<double>(layout.stored_bytes()), 1.35 * static_cast<double>(v.count()));
     }
 }
