@@ -12,5 +12,6 @@ void add_denoise_command(CLI::App& app); // denoise.cpp
 void add_pairs_command(CLI::App& app);   // pairs.cpp
 void add_compare_command(CLI::App& app); // compare.cpp
 void add_train_command(CLI::App& app);   // train.cpp
+void add_eval_command(CLI::App& app);    // eval.cpp
 
 } // namespace clvr

@@ -105,7 +105,7 @@ void add_train_command(CLI::App& app) {
     auto o = std::make_shared<Options>();
     TrainerConfig& t = o->trainer;
     c->add_option("DIR", o->folders, "Folders of training pairs");
-    c->add_option("-o,--output", o->output, "Model to write (.safetensors); beside it .last.safetensors, .checkpoint and .csv")
+    c->add_option("-o,--output", o->output, "Model to write (.safetensors); beside it .last.safetensors, .checkpoint and .training.csv")
         ->type_name("MODEL");
     c->add_option("--validate", o->validate, "Folder of test pairs: the best model on its frames is kept")->type_name("DIR");
     c->add_flag("--resume", o->resume, "Go on from the checkpoint: the same bits as without the interruption");

@@ -1,11 +1,12 @@
 #include "host/frame/metrics.hpp"
+#include "host/frame/flip.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 namespace clvr {
@@ -121,7 +122,19 @@ Metrics compare_frames(const Frame& image, const Frame& reference) {
             m.relmse += d * d / (b * b + 0.01) / n;
         }
     m.rmse = std::sqrt(m.rmse);
+    const std::vector<double> flip = flip_map(image, reference);
+    m.flip = std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(flip.size());
     return m;
+}
+
+std::array<std::pair<const char*, double>, 7> named(const Metrics& m) {
+    return {{{"psnr", m.psnr},
+             {"ssim", m.ssim},
+             {"ssim_opaque", m.ssim_opaque},
+             {"rmse", m.rmse},
+             {"smape", m.smape},
+             {"relmse", m.relmse},
+             {"flip", m.flip}}};
 }
 
 } // namespace clvr

@@ -2,6 +2,9 @@
 #pragma once
 #include "host/frame/frame.hpp"
 
+#include <array>
+#include <utility>
+
 namespace clvr {
 
 /// Measures over whole frames. PSNR and SSIM act on clip(RGB, 0, 1)^(1/2.2), premultiplied over black.
@@ -12,7 +15,11 @@ struct Metrics {
     double rmse = 0;        ///< linear RGB
     double smape = 0;       ///< mean |a-b| / (|a|+|b|+0.01), linear
     double relmse = 0;      ///< mean (a-b)^2 / (b^2+0.01), linear
+    double flip = 0;        ///< mean LDR-FLIP (flip.hpp) of clip(RGB, 0, 1)
 };
+
+/// All of them with their names, in the order of the struct.
+std::array<std::pair<const char*, double>, 7> named(const Metrics& metrics);
 
 /// Throws Error{input} when the sizes differ, a colour channel is missing or a value is not finite.
 Metrics compare_frames(const Frame& image, const Frame& reference);

@@ -1,9 +1,9 @@
 // Frames to and from files.
 #pragma once
-#include "host/frame/frame.hpp"
+#include "host/frame/tonemap.hpp"
 
-#include <array>
 #include <string>
+#include <vector>
 
 namespace clvr {
 
@@ -13,15 +13,15 @@ void write_exr(const Frame& frame, const std::string& path);
 /// Reads any scanline or tiled, half or float (or uint) EXR, channels in any order; the data window becomes the frame. Throws Error{input}.
 Frame read_exr(const std::string& path);
 
-/// How linear radiance becomes 8-bit sRGB: exposure in stops, then a curve by name (filmic, aces, reinhard, none), then sRGB.
-struct Tonemap {
-    std::string curve = "filmic";
-    double exposure = 0;
-};
-/// R G B A of the frame as 8-bit RGBA with straight alpha when alpha is not 1 everywhere, else RGB. Exposure and curve act on the straight
-/// colour C / A: the colour of a silhouette is that of the surface beside it, over every page that the picture is laid on. Throws
+/// R G B A of the frame as 8-bit sRGB PNG, RGBA with straight alpha when alpha is not 1 everywhere, else RGB. Exposure and curve act on the
+/// straight colour C / A: the colour of a silhouette is that of the surface beside it, over every page that the picture is laid on. Throws
 /// Error{input, usage}.
+std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap);
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);
+/// Any PNG as linear light 0..1 (premultiplied; A where the file has an alpha). Throws Error{input}.
+Frame read_png(const std::string& path);
+/// read_png or read_exr, by the path's ending.
+Frame read_picture(const std::string& path);
 
 /// Whether the path ends in .exr.
 bool is_exr_path(const std::string& path);

@@ -1,65 +1,19 @@
 #include "host/io/atomic_file.hpp"
 #include "host/io/frame_file.hpp"
-#include "host/render/scene.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
+#include <memory>
 #include <png.h>
 
 namespace clvr {
 
 namespace {
 
-using Rgb = std::array<double, 3>;
-
-/// The shape of the Khronos "PBR Neutral" curve behind a gain: colours up to `knee` are only scaled, so that albedos keep the look that the
-/// transfer function gives them; above, the greatest component rolls off towards 1. Hue is kept; far highlights lose saturation on their
-/// way to white. The gain makes up for light lost between scatterings; a white Lambert surface that faces the key (radiance 1) becomes 0.9.
-Rgb filmic(const Rgb& c) {
-    constexpr double gain = 1.3, knee = 0.7, desaturation = 0.15;
-    const double peak = gain * std::max({c[0], c[1], c[2]});
-    if (peak <= knee) return {gain * c[0], gain * c[1], gain * c[2]};
-    const double rolled = 1 - (1 - knee) * (1 - knee) / (peak + 1 - 2 * knee);
-    const double white = 1 - 1 / (desaturation * (peak - rolled) + 1);
-    Rgb out;
-    for (int i = 0; i < 3; ++i) out[i] = gain * c[i] * (rolled / peak) * (1 - white) + rolled * white;
-    return out;
-}
-
-/// K. Narkowicz, "ACES Filmic Tone Mapping Curve", 2015, with the exposure factor 0.6 that its author gives to match the ACES reference.
-Rgb aces(const Rgb& c) {
-    Rgb out;
-    for (int i = 0; i < 3; ++i) {
-        const double x = 0.6 * c[i];
-        out[i] = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
-    }
-    return out;
-}
-
-/// E. Reinhard et al., "Photographic Tone Reproduction for Digital Images", 2002, equation 3 on Rec. 709 luminance.
-Rgb reinhard(const Rgb& c) {
-    const double s = 1 / (1 + 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]);
-    return {c[0] * s, c[1] * s, c[2] * s};
-}
-
-Rgb clipped(const Rgb& c) { return c; }
-
-using Curve = Rgb (*)(const Rgb&);
-Curve curve_named(const std::string& name) {
-    constexpr std::array<Curve, std::tuple_size_v<decltype(tonemap_names)>> curves{filmic, aces, reinhard, clipped};
-    const auto found = std::find(tonemap_names.begin(), tonemap_names.end(), name);
-    if (found == tonemap_names.end()) throw Error(ErrorKind::usage, fmt::format("there is no tone map '{}'", name), "--tonemap");
-    return curves[static_cast<std::size_t>(found - tonemap_names.begin())];
-}
-
 unsigned char eight_bits(double x) { return static_cast<unsigned char>(std::lrint(255 * std::clamp(x, 0.0, 1.0))); }
-double srgb_encode(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
-/// A picture of NaN would be black anyway; what the frame holds stays in its EXR.
-double displayable(float x) { return x > 0 ? std::min(static_cast<double>(x), 1e30) : 0.0; }
 
 /// In lower case.
 std::string ending_of(const std::string& path) {
@@ -70,12 +24,10 @@ std::string ending_of(const std::string& path) {
 
 } // namespace
 
-void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path) {
-    const Curve curve = curve_named(tonemap.curve);
-    const double gain = std::exp2(tonemap.exposure);
+std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap) {
+    const ToneCurve curve(tonemap);
     for (const char* name : {"R", "G", "B"})
-        if (!frame.has(name))
-            throw Error(ErrorKind::input, fmt::format("there is no picture to write: the frame has no channel {}", name), path);
+        if (!frame.has(name)) throw Error(ErrorKind::input, fmt::format("there is no picture to write: the frame has no channel {}", name));
     const std::vector<float>*rgb[3] = {&frame.at("R"), &frame.at("G"), &frame.at("B")}, *alpha = frame.has("A") ? &frame.at("A") : nullptr;
     const bool opaque = !alpha || std::all_of(alpha->begin(), alpha->end(), [](float a) { return a >= 1; });
     const std::size_t components = opaque ? 3 : 4;
@@ -83,13 +35,13 @@ void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& pa
     std::vector<unsigned char> pixels;
     pixels.reserve(components * frame.pixels());
     for (std::size_t i = 0; i < frame.pixels(); ++i) {
-        const double a = opaque ? 1.0 : std::min(displayable((*alpha)[i]), 1.0);
+        const double a = opaque ? 1.0 : (*alpha)[i] > 0 ? std::min(static_cast<double>((*alpha)[i]), 1.0) : 0.0;
         const unsigned char a8 = eight_bits(a);
         Rgb straight{0, 0, 0};
         if (a8 > 0)
-            for (int c = 0; c < 3; ++c) straight[c] = gain * displayable((*rgb[c])[i]) / a;
+            for (int c = 0; c < 3; ++c) straight[c] = (*rgb[c])[i] / a;
         const Rgb mapped = curve(straight);
-        for (int c = 0; c < 3; ++c) pixels.push_back(eight_bits(srgb_encode(mapped[c])));
+        for (int c = 0; c < 3; ++c) pixels.push_back(eight_bits(srgb_encoded(mapped[c])));
         if (!opaque) pixels.push_back(a8);
     }
 
@@ -101,10 +53,46 @@ void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& pa
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
     std::vector<unsigned char> encoded(size);
     if (!png_image_write_to_memory(&image, encoded.data(), &size, 0, pixels.data(), 0, nullptr))
-        throw Error(ErrorKind::internal, fmt::format("libpng cannot encode {} x {} pixels: {}", frame.width, frame.height, image.message),
-                    path);
-    write_atomically(path, encoded.data(), size);
+        throw Error(ErrorKind::internal, fmt::format("libpng cannot encode {} x {} pixels: {}", frame.width, frame.height, image.message));
+    encoded.resize(size);
+    return encoded;
 }
+
+void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path) {
+    std::vector<unsigned char> encoded;
+    try {
+        encoded = encode_png(frame, tonemap);
+    } catch (const Error& e) {
+        throw e.where().empty() ? Error(e.kind(), e.what(), path) : e;
+    }
+    write_atomically(path, encoded.data(), encoded.size());
+}
+
+Frame read_png(const std::string& path) {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    const std::unique_ptr<png_image, void (*)(png_image*)> guard(&image, png_image_free);
+    if (!png_image_begin_read_from_file(&image, path.c_str()))
+        throw Error(ErrorKind::input, fmt::format("is no PNG: {}", image.message), path);
+    constexpr png_uint_32 most = 1 << 16;
+    if (image.width > most || image.height > most || static_cast<std::uint64_t>(image.width) * image.height > (std::uint64_t{1} << 28))
+        throw Error(ErrorKind::input, fmt::format("is {} x {} pixels; expected at most 2^28 in all", image.width, image.height), path);
+    const bool alpha = (image.format & PNG_FORMAT_FLAG_ALPHA) != 0;
+    image.format = PNG_FORMAT_LINEAR_RGB_ALPHA; // 16 bits, linear light, premultiplied
+    std::vector<png_uint_16> pixels(PNG_IMAGE_SIZE(image) / sizeof(png_uint_16));
+    if (!png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr))
+        throw Error(ErrorKind::input, fmt::format("is a damaged PNG: {}", image.message), path);
+    Frame frame;
+    frame.width = static_cast<int>(image.width), frame.height = static_cast<int>(image.height);
+    for (const auto& [name, c] : {std::pair("R", 0), {"G", 1}, {"B", 2}, {"A", 3}}) {
+        if (c == 3 && !alpha) continue;
+        std::vector<float>& plane = frame.channel(name);
+        for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = static_cast<float>(pixels[4 * i + static_cast<std::size_t>(c)]) / 65535;
+    }
+    return frame;
+}
+
+Frame read_picture(const std::string& path) { return ending_of(path) == ".png" ? read_png(path) : read_exr(path); }
 
 bool is_exr_path(const std::string& path) { return ending_of(path) == ".exr"; }
 

@@ -1,5 +1,6 @@
 // Everything that decides a picture, besides the voxels: what a scene JSON holds.
 #pragma once
+#include "host/frame/tonemap.hpp"
 #include "host/volume/transfer_function.hpp"
 #include "host/volume/vec.hpp"
 
@@ -9,9 +10,6 @@
 #include <string>
 
 namespace clvr {
-
-/// Names of the tone maps of a PNG (host/io/png.cpp has the curves, in this order).
-constexpr std::array<const char*, 4> tonemap_names{"filmic", "aces", "reinhard", "none"};
 
 enum class Mode { path, dvr, mip };
 enum class Shading { automatic, phase, gradient };

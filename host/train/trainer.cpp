@@ -38,6 +38,9 @@ View read_view(const PairView& files, bool noisy_target) {
     return view;
 }
 
+/// A path without its ending.
+std::string stem_of(const std::string& path) { return std::filesystem::path(path).replace_extension().string(); }
+
 std::string configuration_of(const Model& model, const TrainerConfig& c, const std::vector<std::string>& views) {
     nlohmann::ordered_json levels = nlohmann::ordered_json::array();
     for (const auto& l : model.levels) levels.push_back({l.pixels, l.codes});
@@ -64,6 +67,8 @@ std::string configuration_of(const Model& model, const TrainerConfig& c, const s
 }
 
 } // namespace
+
+std::string training_csv(const std::string& output) { return stem_of(output) + ".training.csv"; }
 
 struct Trainer::State {
     Device device;
@@ -104,8 +109,8 @@ struct Trainer::State {
         std::string csv = "epoch,loss,validation_psnr\n";
         for (std::size_t e = 0; e < checkpoint.records.size(); ++e)
             csv += fmt::format("{},{},{}\n", e + 1, checkpoint.records[e].loss, checkpoint.records[e].validation);
-        const std::string stem = (std::filesystem::path(output).parent_path() / std::filesystem::path(output).stem()).string();
-        write_atomically(stem + ".csv", csv.data(), csv.size());
+        const std::string stem = stem_of(output);
+        write_atomically(training_csv(output), csv.data(), csv.size());
         write_model(step.model(), stem + ".last.safetensors");
         write_model(validation.empty() ? step.model() : checkpoint.best, output);
         write_checkpoint(checkpoint, step.model(), stem + ".checkpoint");
@@ -159,9 +164,7 @@ Trainer::Trainer(const Device& device, const Model& model, const TrainerConfig& 
         }
     s.checkpoint.configuration = configuration_of(model, config, names);
     if (resume) {
-        const std::string path =
-            (std::filesystem::path(output).parent_path() / std::filesystem::path(output).stem()).string() + ".checkpoint";
-        s.checkpoint = read_checkpoint(path, s.checkpoint.configuration);
+        s.checkpoint = read_checkpoint(stem_of(output) + ".checkpoint", s.checkpoint.configuration);
         s.step.set_state(s.checkpoint.state);
     }
 }

@@ -34,8 +34,8 @@ struct TrainerProgress {
 };
 
 /// Trains and keeps everything on disk: `output` holds the best model (by validation; the last one without), <output>.last the last one,
-/// <output>.checkpoint the state after each epoch (weights, moments, position, records, configuration), <output>.csv a line an epoch. The
-/// state is the seed's alone: the same bits whether or not it was interrupted.
+/// <output>.checkpoint the state after each epoch (weights, moments, position, records, configuration), training_csv(output) a line an
+/// epoch. The state is the seed's alone: the same bits whether or not it was interrupted.
 class Trainer {
 public:
     /// Reads the frames. `resume`: goes on from the checkpoint, which must be of the same configuration and data. Throws Error{input,
@@ -54,6 +54,9 @@ private:
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// Where the training of a model file leaves its curve: <output>.training.csv (epoch, loss, validation_psnr).
+std::string training_csv(const std::string& output);
 
 /// The crops of an epoch in the order of its steps: `patches` of each view, of one of its `frames` images (view * frames + frame),
 /// shuffled. A function of its arguments alone. `width`, `height` per view.

@@ -82,7 +82,7 @@ TEST_F(Learning, TrainsDenoisesAndCompares) {
     const Outcome o = run(train);
     ASSERT_EQ(o.exit_code, 0) << o.err;
     const std::string model = text(path("m.safetensors"));
-    for (const char* name : {"m.last.safetensors", "m.checkpoint", "m.csv"}) EXPECT_TRUE(exists(name)) << name;
+    for (const char* name : {"m.last.safetensors", "m.checkpoint", "m.training.csv"}) EXPECT_TRUE(exists(name)) << name;
 
     const Outcome d =
         run({"denoise", path("a/view_0000_noisy_0.exr"), "--model", path("m.safetensors"), "-o", path("d.exr"), "--show", "guides,levels"});
@@ -93,6 +93,11 @@ TEST_F(Learning, TrainsDenoisesAndCompares) {
     ASSERT_EQ(c.exit_code, 0) << c.err;
     EXPECT_THAT(c.out, AllOf(HasSubstr("\"psnr\""), HasSubstr("\"ssim\"")));
     EXPECT_EQ(run({"compare", path("d.exr"), path("none.exr")}).exit_code, 3);
+    ASSERT_EQ(run({"denoise", path("d.exr"), "--model", path("m.safetensors"), "-o", path("d.png"), "--tonemap", "none"}).exit_code, 0);
+    const Outcome maps = run({"compare", path("d.png"), path("a/view_0000_reference.exr"), "--tonemap", "filmic", "--map", path("e.png")});
+    ASSERT_EQ(maps.exit_code, 0) << maps.err;
+    EXPECT_THAT(maps.out, HasSubstr("flip"));
+    EXPECT_TRUE(exists("e.flip.png") && exists("e.difference.png"));
 
     const Outcome r = run({"render", path("ball_24x20x16_uint8.raw"), "--size", "30x26", "--spp", "1", "--denoise", "--model",
                            path("m.safetensors"), "-o", path("r.exr"), "-o", path("r.png")});
@@ -123,6 +128,10 @@ TEST_F(Learning, RefusesWithOneLine) {
         {{"train", "-o", path("m.safetensors")}, 2},
         {{"train", path("none"), "-o", path("m.safetensors")}, 3},
         {{"train", path("none"), "-o", path("m.safetensors"), "--loss", "huber"}, 2},
+        {{"compare", path("none.exr"), path("none.exr"), "--map", path("e.exr")}, 2},
+        {{"compare", path("none.exr"), path("none.exr"), "--tonemap", "sepia"}, 2},
+        {{"compare", path("none.png"), path("none.png")}, 3},
+        {{"compare", path("ball_24x20x16_uint8.json"), path("none.png")}, 3},
         {{"denoise", path("none.exr"), "-o", path("d.png")}, 2},
         {{"denoise", path("none.exr"), "-o", path("d.png"), "--model", path("none.safetensors")}, 3},
         {{"denoise", path("none.exr"), "-o", path("d.png"), "--model", path("ball_24x20x16_uint8.raw")}, 3},

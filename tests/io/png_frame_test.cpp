@@ -1,12 +1,12 @@
 // Pictures as PNG: tone maps, alpha, and the check of the output's place.
 #include "host/io/frame_file.hpp"
-#include "host/render/scene.hpp"
 #include "tests/io/frames.hpp"
 
 #include <gmock/gmock.h>
 #include <png.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 namespace clvr {
@@ -164,6 +164,35 @@ TEST(FramePathTest, BadPlacesAreFoundBeforeRendering) {
     EXPECT_THAT(error_of([&] { check_frame_path(folder / (std::string(300, 'a') + ".png")); }).line(), HasSubstr("longer than"));
     EXPECT_THAT(error_of([&] { check_frame_path("/proc/clvr.png"); }).line(), HasSubstr("cannot write here")); // for root, too
     EXPECT_EQ(folder.entries(), 2u);
+}
+
+TEST(PngFrameTest, ReadsBackAsLinearLight) {
+    const Folder folder;
+    Frame f;
+    f.width = 3, f.height = 1;
+    f.channels = {{"R", {0.5f, 0.25f, 0}}, {"G", {1, 0, 0}}, {"B", {0.1f, 0.5f, 0}}, {"A", {1, 0.5f, 0}}};
+    write_png(f, {"none", 0}, folder / "a.png");
+    const Frame back = read_picture(folder / "a.png");
+    ASSERT_EQ(back.width, 3);
+    for (const auto& [name, values] : f.channels)
+        for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(back.at(name)[i], values[i], 0.005) << name << i;
+    f.channels.erase("A");
+    write_png(f, {"none", 0}, folder / "b.png");
+    EXPECT_FALSE(clvr::read_png(folder / "b.png").has("A"));
+}
+
+TEST(PngFrameTest, RefusesWhatIsNone) {
+    const Folder folder;
+    std::ofstream(folder / "a.png") << "no picture";
+    EXPECT_THROW(clvr::read_png(folder / "a.png"), Error);
+    EXPECT_THROW(clvr::read_png(folder / "none.png"), Error);
+    Frame f;
+    f.width = f.height = 16;
+    for (const char* c : {"R", "G", "B"}) f.channel(c)[40] = 1;
+    const std::vector<unsigned char> whole = encode_png(f, {"none", 0});
+    std::ofstream(folder / "c.png", std::ios::binary)
+        .write(reinterpret_cast<const char*>(whole.data()), static_cast<std::streamsize>(whole.size()) * 2 / 3);
+    EXPECT_THROW(clvr::read_png(folder / "c.png"), Error);
 }
 
 } // namespace

@@ -225,7 +225,7 @@ TEST_F(TrainerFiles, ResumedTrainingGivesTheSameFile) {
     ASSERT_TRUE(train(config(), "cut.safetensors", true));
     EXPECT_EQ(read_text(path("whole.safetensors")), read_text(path("cut.safetensors")));
     EXPECT_EQ(read_text(path("whole.checkpoint")), read_text(path("cut.checkpoint")));
-    EXPECT_EQ(read_text(path("whole.csv")), read_text(path("cut.csv")));
+    EXPECT_EQ(read_text(path("whole.training.csv")), read_text(path("cut.training.csv")));
     ASSERT_TRUE(train(config(), "again.safetensors", false));
     EXPECT_EQ(read_text(path("whole.safetensors")), read_text(path("again.safetensors")));
 }
@@ -241,7 +241,7 @@ TEST_F(TrainerFiles, KeepsTheBestModelAndTheLast) {
         return k;
     }();
     EXPECT_EQ(c.state.parameters.size(), start_model().parameters());
-    EXPECT_THAT(read_text(path("m.csv")), HasSubstr("epoch,loss,validation_psnr\n1,"));
+    EXPECT_THAT(read_text(path("m.training.csv")), HasSubstr("epoch,loss,validation_psnr\n1,"));
 }
 
 TEST_F(TrainerFiles, RefusesTheCheckpointOfAnotherTraining) {

@@ -23,6 +23,7 @@ only host/render runtime/ host/volume/ host/frame/ host/render/ kernels/shared/
 only host/denoise runtime/ host/frame/ host/denoise/ kernels/shared/
 only host/io runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/io/ kernels/shared/
 only host/train runtime/ host/frame/ host/denoise/ host/io/ host/train/ kernels/shared/
+only host/eval runtime/ host/frame/ host/denoise/ host/io/ host/train/ host/eval/
 only host/cli runtime/ host/ kernels/shared/
 only kernels/shared shared/
 only kernels/lib shared/ lib/

@@ -1,0 +1,144 @@
+// clvr eval: what denoisers reach on a folder of test pairs.
+#include "host/cli/commands.hpp"
+#include "host/cli/device_options.hpp"
+#include "host/cli/progress_bar.hpp"
+#include "host/eval/report.hpp"
+#include "host/io/atomic_file.hpp"
+#include "host/io/frame_file.hpp"
+#include "host/io/model_file.hpp"
+#include "host/train/trainer.hpp"
+#include "runtime/error.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+namespace clvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+struct Options {
+    std::string folder, tune, report;
+    std::vector<std::string> models;
+    Tonemap tonemap;
+    bool json = false;
+    DeviceOptions device;
+};
+
+ordered_json to_json(const Metrics& metrics) {
+    ordered_json all;
+    for (const auto& [name, value] : named(metrics)) {
+        if (std::isfinite(value))
+            all[name] = value;
+        else
+            all[name] = nullptr; // the PSNR of equal pictures
+    }
+    return all;
+}
+
+ordered_json to_json(const Evaluation& e, const Options& o, const Baselines& b) {
+    ordered_json mean, views = ordered_json::array();
+    for (const Score& s : e.scores) mean[s.name] = to_json(s.mean);
+    for (std::size_t v = 0; v < e.views.size(); ++v) {
+        ordered_json row{{"frame", fs::path(e.views[v]).filename().string()}};
+        for (const Score& s : e.scores) row[s.name] = to_json(s.views[v]);
+        views.push_back(row);
+    }
+    return {{"folder", o.folder},
+            {"models", o.models},
+            {"cross-bilateral", {{"spatial", b.cross_bilateral.spatial}, {"feature", b.cross_bilateral.feature}}},
+            {"wavelet", {{"colour", b.wavelet.colour}, {"feature", b.wavelet.feature}}},
+            {"mean", mean},
+            {"views", views}};
+}
+
+void print_table(const Evaluation& e) {
+    fmt::print("{:<18}", fmt::format("mean of {} views", e.views.size()));
+    for (const auto& [name, value] : named(Metrics())) fmt::print(" {:>11}", name);
+    fmt::print("\n");
+    for (const Score& s : e.scores) {
+        fmt::print("{:<18}", s.name);
+        for (const auto& [name, value] : named(s.mean)) fmt::print(" {:>11.4f}", value);
+        fmt::print("\n");
+    }
+}
+
+/// Names of models in tables: their files' stems, or whole paths where stems are the same.
+std::vector<std::string> names_of(const std::vector<std::string>& paths) {
+    std::vector<std::string> names;
+    for (const auto& path : paths) {
+        const std::string stem = fs::path(path).stem().string();
+        int as = 0;
+        for (const auto& other : paths) as += fs::path(other).stem() == fs::path(path).stem();
+        names.push_back(as > 1 ? path : stem);
+    }
+    return names;
+}
+
+void eval(const Options& o) {
+    if (o.models.empty()) throw Error(ErrorKind::usage, "no model given: add --model FILE, as `clvr train` writes it", "clvr eval");
+    if (!o.report.empty()) check_writable(o.report);
+    const ToneCurve known(o.tonemap);
+    std::vector<std::pair<std::string, Model>> models;
+    std::vector<std::pair<std::string, std::string>> trainings;
+    const std::vector<std::string> names = names_of(o.models);
+    for (std::size_t k = 0; k < o.models.size(); ++k) {
+        models.emplace_back(names[k], read_model(o.models[k]));
+        const std::string csv = training_csv(o.models[k]);
+        if (fs::is_regular_file(csv)) trainings.emplace_back(names[k], read_text(csv));
+    }
+    Device device = open_device(o.device);
+    Baselines baselines;
+    if (!o.tune.empty()) {
+        ProgressBar bar("choosing the baselines' settings", false);
+        baselines = best_baselines(device, o.tune, [&](double done) { bar.update(done, ""); });
+    }
+    const std::vector<Candidate> all = candidates(device, models, baselines);
+    Evaluation e;
+    {
+        ProgressBar bar("evaluating", false);
+        e = evaluate(all, o.folder, [&](double done) { bar.update(done, ""); });
+    }
+    if (!o.report.empty()) {
+        ReportOptions r;
+        r.title = fmt::format("{} on {}", fmt::join(names, ", "), o.folder);
+        r.notes = {fmt::format("device: {}", device.facts().name),
+                   fmt::format("cross-bilateral: sigma {} pixels, features {}; wavelet: colour {}, features {}{}",
+                               baselines.cross_bilateral.spatial, baselines.cross_bilateral.feature, baselines.wavelet.colour,
+                               baselines.wavelet.feature, o.tune.empty() ? " (defaults)" : fmt::format(" (best of 3x3 on {})", o.tune)),
+                   "PSNR and SSIM of clip(RGB, 0, 1)^(1/2.2) over black; RMSE, SMAPE and relMSE linear"};
+        r.tonemap = o.tonemap;
+        r.trainings = trainings;
+        const std::string html = html_report(e, all, o.folder, r);
+        write_atomically(o.report, html.data(), html.size());
+    }
+    if (o.json)
+        fmt::print("{}\n", to_json(e, o, baselines).dump(1));
+    else
+        print_table(e);
+    print_profiles(o.device, {device});
+}
+
+} // namespace
+
+void add_eval_command(CLI::App& app) {
+    CLI::App* c = app.add_subcommand("eval", "Measure models and classical denoisers on a folder of test pairs");
+    auto o = std::make_shared<Options>();
+    c->add_option("DIR", o->folder, "Folder that `clvr pairs --split test` made")->required();
+    c->add_option("--model", o->models, "Trained network (.safetensors; may be given again)")->type_name("FILE");
+    c->add_option("--tune", o->tune, "Choose the classical denoisers' settings on this folder of training pairs [defaults]")
+        ->type_name("DIR");
+    c->add_option("--report", o->report, "Also write one self-contained page with pictures, crops and curves")->type_name("FILE.html");
+    c->add_option("--exposure", o->tonemap.exposure, "Report: exposure in stops [0]");
+    c->add_option("--tonemap", o->tonemap.curve, "Report: filmic, aces, reinhard or none [filmic]");
+    c->add_flag("--json", o->json, "Write JSON with the measures of every view");
+    add_device_options(*c, o->device);
+    c->callback([o] { eval(*o); });
+}
+
+} // namespace clvr

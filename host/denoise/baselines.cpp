@@ -1,0 +1,156 @@
+#include "host/denoise/baselines.hpp"
+#include "host/denoise/channels.hpp"
+#include "kernels/shared/filter_params.h"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace clvr {
+
+namespace {
+
+constexpr const char* colours[] = {"R", "G", "B"};
+constexpr const char* features[CLVR_FILTER_FEATURES] = {"opacity.A", "albedo.R", "albedo.G", "albedo.B",
+                                                        "normal.X",  "normal.Y", "normal.Z", "depth.Z"};
+constexpr float albedo_floor = 1.0f / 32, opacity_floor = 1.0f / 256;
+constexpr int pad = 32, wavelet_levels = 5;
+
+float finite(float v) { return std::isfinite(v) ? v : 0; }
+
+/// A frame on the device as FilterParams says.
+class Filter {
+public:
+    Filter(const Device& device, const Frame& frame) : device_(device), frame_(frame) {
+        for (const char* c : colours)
+            if (!frame.has(c)) throw Error(ErrorKind::input, fmt::format("lacks channel {}", c));
+        width_ = device.tunable("conv_width", device.facts().type == DeviceType::cpu ? 16 : 1);
+        shape_.width = frame.width, shape_.height = frame.height, shape_.pad = pad, shape_.step = 1;
+        shape_.row = (frame.width + width_ - 1) / width_ * width_ + 2 * pad;
+        shape_.plane = shape_.row * (frame.height + 2 * pad);
+        opacity_ = frame.has("opacity.A") ? &frame.at("opacity.A") : frame.has("A") ? &frame.at("A") : nullptr;
+        upload();
+    }
+
+    shared::FilterParams& shape() { return shape_; }
+
+    /// Runs a stage with the present shape over all pixels; `buffers` follow the features.
+    template <class... Buffers>
+    void run(const char* stage, const Buffers&... buffers) {
+        const Buffer params = device_.upload(std::vector<shared::FilterParams>{shape_}, "filter settings");
+        Kernel kernel = device_.kernel(stage, {{"CLVR_WIDTH", std::to_string(width_)}});
+        const Range items{static_cast<std::size_t>((shape_.width + width_ - 1) / width_), static_cast<std::size_t>(shape_.height)};
+        device_.launch(kernel, items, kernel.group(width_ == 1 ? 64 : 4), {}, params, features_, buffers...);
+        device_.finish(); // before the settings go
+    }
+
+    Buffer planes(int count) {
+        Buffer b = device_.buffer(static_cast<std::size_t>(count) * shape_.plane * 4 + 64, "filtered planes");
+        device_.fill(b, 0);
+        return b;
+    }
+
+    Buffer colour;             ///< 3 planes and the variance
+    bool has_variance = false; ///< whether plane 3 is filled
+
+    /// The frame of a filtered colour.
+    Frame result(const Buffer& filtered) {
+        const std::vector<float> all = device_.download<float>(filtered, std::size_t{3} * shape_.plane);
+        Frame f;
+        f.width = shape_.width, f.height = shape_.height, f.attributes = frame_.attributes;
+        for (int c = 0; c < 3; ++c) {
+            std::vector<float>& to = f.channel(colours[c]);
+            const std::string background = std::string("background.") + colours[c];
+            for (std::size_t i = 0; i < to.size(); ++i) {
+                to[i] = std::max(all[c * plane() + at(i)] * albedo(c, i) * opacity(i), 0.0f);
+                if (frame_.has(background)) to[i] += (1 - opacity(i)) * finite(frame_.at(background)[i]);
+            }
+        }
+        if (opacity_) f.channels["A"] = *opacity_;
+        return f;
+    }
+
+private:
+    Device device_;
+    const Frame& frame_;
+    shared::FilterParams shape_{};
+    int width_ = 1;
+    const std::vector<float>* opacity_ = nullptr;
+    Buffer features_;
+
+    std::size_t plane() const { return static_cast<std::size_t>(shape_.plane); }
+    std::size_t at(std::size_t i) const {
+        const std::size_t w = static_cast<std::size_t>(shape_.width);
+        return (i / w + pad) * static_cast<std::size_t>(shape_.row) + pad + i % w;
+    }
+    float opacity(std::size_t i) const { return opacity_ ? finite((*opacity_)[i]) : 1; }
+    float albedo(int c, std::size_t i) const {
+        const char* name = features[1 + c];
+        return frame_.has(name) ? std::max(finite(frame_.at(name)[i]), albedo_floor) : 1;
+    }
+
+    void upload() {
+        std::vector<float> planes(CLVR_FILTER_FEATURES * plane());
+        for (std::size_t i = 0; i < frame_.pixels(); ++i) planes[at(i)] = opacity(i);
+        for (int k = 1; k < CLVR_FILTER_FEATURES; ++k)
+            if (frame_.has(features[k]))
+                for (std::size_t i = 0; i < frame_.pixels(); ++i)
+                    planes[static_cast<std::size_t>(k) * plane() + at(i)] = finite(frame_.at(features[k])[i]);
+        planes.resize(planes.size() + 16); // rows are read 16 pixels at once
+        features_ = device_.upload(planes, "features");
+
+        has_variance = frame_.has("variance.R") && frame_.has("variance.G") && frame_.has("variance.B");
+        planes.assign(4 * plane() + 16, 0);
+        for (std::size_t i = 0; i < frame_.pixels(); ++i) {
+            float variance = 0;
+            const float shares[] = {0.2126f, 0.7152f, 0.0722f};
+            for (int c = 0; c < 3; ++c) {
+                const float divisor = albedo(c, i) * std::max(opacity(i), opacity_floor);
+                planes[static_cast<std::size_t>(c) * plane() + at(i)] = finite(beauty_without_background(frame_, colours[c], i) / divisor);
+                if (!has_variance) continue;
+                const float share = shares[c] / divisor;
+                variance += share * share * finite(frame_.at(std::string("variance.") + colours[c])[i]);
+            }
+            planes[3 * plane() + at(i)] = variance;
+        }
+        colour = device_.upload(planes, "colour");
+    }
+};
+
+float falloff(double sigma, const char* what) {
+    if (!(sigma > 0 && std::isfinite(sigma)))
+        throw Error(ErrorKind::usage, fmt::format("{} is {}; expected a positive number", what, sigma));
+    return static_cast<float>(-0.5 / (sigma * sigma));
+}
+
+} // namespace
+
+Frame denoise(const Device& device, const Frame& frame, const CrossBilateral& settings) {
+    Filter filter(device, frame);
+    filter.shape().spatial = falloff(settings.spatial, "the spatial sigma");
+    filter.shape().feature = falloff(settings.feature, "the features' sigma");
+    filter.shape().radius = std::clamp(static_cast<int>(std::lround(2 * settings.spatial)), 1, pad);
+    const Buffer out = filter.planes(3);
+    filter.run("denoise/cross_bilateral", filter.colour, out);
+    return filter.result(out);
+}
+
+Frame denoise(const Device& device, const Frame& frame, const Wavelet& settings) {
+    Filter filter(device, frame);
+    if (!(settings.colour > 0 && std::isfinite(settings.colour)))
+        throw Error(ErrorKind::usage, fmt::format("the colour's sigma is {}; expected a positive number", settings.colour));
+    filter.shape().colour = static_cast<float>(1 / settings.colour);
+    filter.shape().feature = falloff(settings.feature, "the features' sigma");
+    filter.shape().radius = 2;
+    if (!filter.has_variance) filter.run("denoise/spatial_variance", filter.colour);
+    Buffer out = filter.planes(4);
+    for (int level = 0; level < wavelet_levels; ++level) {
+        filter.shape().step = 1 << level;
+        filter.run("denoise/wavelet", filter.colour, out);
+        std::swap(filter.colour, out);
+    }
+    return filter.result(filter.colour);
+}
+
+} // namespace clvr

@@ -1,0 +1,101 @@
+#include "host/eval/evaluation.hpp"
+#include "host/denoise/denoiser.hpp"
+#include "host/io/frame_file.hpp"
+#include "host/train/pairs.hpp"
+#include "runtime/error.hpp"
+
+#include <algorithm>
+#include <memory>
+
+namespace clvr {
+
+namespace {
+
+constexpr double Metrics::*measures[] = {&Metrics::psnr,  &Metrics::ssim,   &Metrics::ssim_opaque, &Metrics::rmse,
+                                         &Metrics::smape, &Metrics::relmse, &Metrics::flip};
+
+Metrics mean_of(const std::vector<Metrics>& views) {
+    Metrics mean;
+    for (const auto measure : measures) {
+        for (const Metrics& m : views) mean.*measure += m.*measure;
+        mean.*measure /= static_cast<double>(views.size());
+    }
+    return mean;
+}
+
+PairsFolder with_references(const std::string& folder) {
+    PairsFolder pairs = read_pairs(folder);
+    if (pairs.views.front().reference.empty()) throw Error(ErrorKind::input, "has no references to measure against", folder);
+    return pairs;
+}
+
+/// Runs f with a file's name added to errors that lack one.
+template <class F>
+auto naming(const std::string& file, F f) {
+    try {
+        return f();
+    } catch (const Error& e) {
+        throw e.where().empty() ? Error(e.kind(), e.what(), file) : e;
+    }
+}
+
+} // namespace
+
+std::vector<Candidate> candidates(const Device& device, const std::vector<std::pair<std::string, Model>>& models,
+                                  const Baselines& baselines) {
+    std::vector<Candidate> all{{"noisy", [](const Frame& noisy) { return noisy; }}};
+    for (const auto& [name, model] : models) {
+        const auto denoiser = std::make_shared<Denoiser>(device, model);
+        all.push_back({name, [denoiser](const Frame& noisy) { return denoiser->denoise(noisy); }});
+    }
+    all.push_back({"cross-bilateral", [=](const Frame& noisy) { return denoise(device, noisy, baselines.cross_bilateral); }});
+    all.push_back({"wavelet", [=](const Frame& noisy) { return denoise(device, noisy, baselines.wavelet); }});
+    return all;
+}
+
+Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string& folder, const std::function<void(double)>& seen) {
+    const PairsFolder pairs = with_references(folder);
+    Evaluation e;
+    for (const auto& c : candidates) e.scores.push_back({c.name, {}, {}});
+    for (const auto& view : pairs.views) {
+        const Frame noisy = read_exr(view.noisy.front()), reference = read_exr(view.reference);
+        e.views.push_back(view.noisy.front());
+        for (std::size_t k = 0; k < candidates.size(); ++k)
+            e.scores[k].views.push_back(
+                naming(view.noisy.front(), [&] { return compare_frames(candidates[k].denoise(noisy), reference); }));
+        if (seen) seen(static_cast<double>(e.views.size()) / static_cast<double>(pairs.views.size()));
+    }
+    for (Score& s : e.scores) s.mean = mean_of(s.views);
+    return e;
+}
+
+Baselines best_baselines(const Device& device, const std::string& folder, const std::function<void(double)>& seen) {
+    const PairsFolder pairs = with_references(folder);
+    constexpr double factors[] = {0.5, 1, 2};
+    std::vector<Baselines> grid;
+    for (const double first : factors)
+        for (const double second : factors) {
+            Baselines b;
+            b.cross_bilateral.spatial *= first, b.cross_bilateral.feature *= second;
+            b.wavelet.colour *= first, b.wavelet.feature *= second;
+            grid.push_back(b);
+        }
+    std::vector<double> bilateral(grid.size()), wavelet(grid.size());
+    double done = 0;
+    for (const auto& view : pairs.views) {
+        const Frame noisy = read_exr(view.noisy.front()), reference = read_exr(view.reference);
+        naming(view.noisy.front(), [&] {
+            for (std::size_t k = 0; k < grid.size(); ++k) {
+                bilateral[k] += psnr(denoise(device, noisy, grid[k].cross_bilateral), reference);
+                wavelet[k] += psnr(denoise(device, noisy, grid[k].wavelet), reference);
+            }
+        });
+        if (seen) seen((done += 1) / static_cast<double>(pairs.views.size()));
+    }
+    const auto best = [&](const std::vector<double>& sums) {
+        return grid[static_cast<std::size_t>(std::max_element(sums.begin(), sums.end()) - sums.begin())];
+    };
+    return {best(bilateral).cross_bilateral, best(wavelet).wavelet};
+}
+
+} // namespace clvr

@@ -1,0 +1,49 @@
+// Denoisers measured on a folder of test pairs.
+#pragma once
+#include "host/denoise/baselines.hpp"
+#include "host/denoise/model.hpp"
+#include "host/frame/metrics.hpp"
+#include "runtime/device.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// A way from a noisy frame to a picture.
+struct Candidate {
+    std::string name; ///< "noisy", a model's name, "cross-bilateral", "wavelet"
+    std::function<Frame(const Frame& noisy)> denoise;
+};
+
+/// Settings of the classical denoisers.
+struct Baselines {
+    CrossBilateral cross_bilateral;
+    Wavelet wavelet;
+};
+
+/// The noisy input as it is, the models (name, network), and both classical denoisers, in this order.
+std::vector<Candidate> candidates(const Device& device, const std::vector<std::pair<std::string, Model>>& models,
+                                  const Baselines& baselines);
+
+/// What one candidate reached.
+struct Score {
+    std::string name;
+    std::vector<Metrics> views;
+    Metrics mean; ///< of each measure over the views
+};
+
+struct Evaluation {
+    std::vector<std::string> views; ///< the noisy frames' files
+    std::vector<Score> scores;      ///< in the candidates' order
+};
+
+/// Every view of a folder (its first noisy frame) through every candidate, against its reference. `seen` is called after each view with the
+/// share that is done. Throws Error{input} when the folder has no references.
+Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string& folder, const std::function<void(double)>& seen = {});
+
+/// The settings with the best mean PSNR over a folder, each of a 3x3 grid around the defaults (a factor of 2 between neighbours).
+Baselines best_baselines(const Device& device, const std::string& folder, const std::function<void(double)>& seen = {});
+
+} // namespace clvr

@@ -1,0 +1,55 @@
+#include "host/frame/error_pictures.hpp"
+#include "host/frame/flip.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clvr {
+
+namespace {
+
+constexpr const char* colours[] = {"R", "G", "B"};
+
+/// sRGB stations of matplotlib's "magma" (S. van der Walt, N. Smith; CC0), linear between them.
+constexpr double stations[][3] = {{0, 0, 4},      {28, 16, 68},   {79, 18, 123},   {129, 37, 129}, {181, 54, 122},
+                                  {229, 80, 100}, {251, 135, 97}, {254, 194, 135}, {252, 253, 191}};
+constexpr int intervals = 8;
+
+/// Component c of the colour of v, 0..1, as linear light.
+double magma(double v, int c) {
+    const double at = std::clamp(v, 0.0, 1.0) * intervals;
+    const int k = std::min(static_cast<int>(at), intervals - 1);
+    const double srgb = (stations[k][c] + (at - k) * (stations[k + 1][c] - stations[k][c])) / 255;
+    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+Frame as_large(const Frame& frame) {
+    Frame f;
+    f.width = frame.width, f.height = frame.height;
+    return f;
+}
+
+} // namespace
+
+Frame flip_picture(const Frame& image, const Frame& reference) {
+    const std::vector<double> map = flip_map(image, reference);
+    Frame picture = as_large(image);
+    for (int c = 0; c < 3; ++c) {
+        std::vector<float>& plane = picture.channel(colours[c]);
+        for (std::size_t i = 0; i < map.size(); ++i) plane[i] = static_cast<float>(magma(map[i], c));
+    }
+    return picture;
+}
+
+Frame difference_picture(const Frame& image, const Frame& reference) {
+    const auto display = [](double v) { return std::pow(std::clamp(v, 0.0, 1.0), 1 / 2.2); };
+    Frame picture = as_large(image);
+    for (const char* c : colours) {
+        std::vector<float>& plane = picture.channel(c);
+        for (std::size_t i = 0; i < plane.size(); ++i)
+            plane[i] = static_cast<float>(std::pow(std::abs(display(image.at(c)[i]) - display(reference.at(c)[i])), 2.2));
+    }
+    return picture;
+}
+
+} // namespace clvr
