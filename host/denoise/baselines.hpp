@@ -7,14 +7,14 @@ namespace clvr {
 
 /// Cross-bilateral filter (Eisemann, Durand 2004; Petschnigg et al. 2004) over the noise-free features.
 struct CrossBilateral {
-    double spatial = 6;   ///< sigma [pixels]; the window reaches 2 sigma, at most 32 pixels
+    double spatial = 12;  ///< sigma [pixels]; the window reaches 2 sigma, at most 32 pixels
     double feature = 0.2; ///< sigma of the distance of albedo (0..1), normal (-1..1), depth (0..8)
 };
 
 /// Edge-avoiding a-trous wavelet (Dammertz et al. 2010) with variance-guided colour weights (Schied et al. 2017), 5 levels.
 struct Wavelet {
-    double colour = 4;    ///< sigma of luminance [standard deviations]
-    double feature = 0.2; ///< as above
+    double colour = 8;    ///< sigma of luminance [standard deviations]
+    double feature = 0.4; ///< as above
 };
 
 /// Denoises with what the network has, too: radiance over albedo (not below 1/32), pixels weighted by opacity, features albedo.*, normal.*,

@@ -1,5 +1,6 @@
 #include "host/frame/error_pictures.hpp"
 #include "host/frame/flip.hpp"
+#include "host/frame/tonemap.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +20,7 @@ constexpr int intervals = 8;
 double magma(double v, int c) {
     const double at = std::clamp(v, 0.0, 1.0) * intervals;
     const int k = std::min(static_cast<int>(at), intervals - 1);
-    const double srgb = (stations[k][c] + (at - k) * (stations[k + 1][c] - stations[k][c])) / 255;
-    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+    return srgb_decoded((stations[k][c] + (at - k) * (stations[k + 1][c] - stations[k][c])) / 255);
 }
 
 Frame as_large(const Frame& frame) {

@@ -18,7 +18,7 @@ Frame read_exr(const std::string& path);
 /// Error{input, usage}.
 std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap);
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);
-/// Any PNG as linear light 0..1 (premultiplied; A where the file has an alpha). Throws Error{input}.
+/// Any PNG as linear light 0..1 of its 8-bit sRGB (premultiplied; A where the file has an alpha). Throws Error{input}.
 Frame read_png(const std::string& path);
 /// read_png or read_exr, by the path's ending.
 Frame read_picture(const std::string& path);

@@ -3,6 +3,7 @@
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -78,16 +79,21 @@ Frame read_png(const std::string& path) {
     if (image.width > most || image.height > most || static_cast<std::uint64_t>(image.width) * image.height > (std::uint64_t{1} << 28))
         throw Error(ErrorKind::input, fmt::format("is {} x {} pixels; expected at most 2^28 in all", image.width, image.height), path);
     const bool alpha = (image.format & PNG_FORMAT_FLAG_ALPHA) != 0;
-    image.format = PNG_FORMAT_LINEAR_RGB_ALPHA; // 16 bits, linear light, premultiplied
-    std::vector<png_uint_16> pixels(PNG_IMAGE_SIZE(image) / sizeof(png_uint_16));
+    image.format = PNG_FORMAT_RGBA; // libpng's own conversion to linear light is as coarse as 8 bits
+    std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(image));
     if (!png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr))
         throw Error(ErrorKind::input, fmt::format("is a damaged PNG: {}", image.message), path);
     Frame frame;
     frame.width = static_cast<int>(image.width), frame.height = static_cast<int>(image.height);
-    for (const auto& [name, c] : {std::pair("R", 0), {"G", 1}, {"B", 2}, {"A", 3}}) {
-        if (c == 3 && !alpha) continue;
-        std::vector<float>& plane = frame.channel(name);
-        for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = static_cast<float>(pixels[4 * i + static_cast<std::size_t>(c)]) / 65535;
+    std::array<float, 256> linear;
+    for (std::size_t v = 0; v < linear.size(); ++v) linear[v] = static_cast<float>(srgb_decoded(static_cast<double>(v) / 255));
+    const char* const names[] = {"R", "G", "B", "A"};
+    for (std::size_t c = 0; c < (alpha ? 4 : 3); ++c) {
+        std::vector<float>& plane = frame.channel(names[c]);
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+            const float a = static_cast<float>(pixels[4 * i + 3]) / 255;
+            plane[i] = c == 3 ? a : linear[pixels[4 * i + c]] * a;
+        }
     }
     return frame;
 }

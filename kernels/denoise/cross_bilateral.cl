@@ -15,8 +15,9 @@ __kernel void cross_bilateral(__constant FilterParams* p, __global const float* 
             int at = centre + j * p->row + i;
             Features there = load_features(p, features, at);
             vfloat spatial = (vfloat)((float)(i * i + j * j) * p->spatial);
-            vfloat w = v_load(features + at) * v_exp(fma(feature_distance(&here, &there), (vfloat)(p->feature), spatial));
-            weights += w;
+            vfloat opacity = v_load(features + at), near = v_exp(fma(feature_distance(&here, &there), (vfloat)(p->feature), spatial));
+            weights = fma(opacity, near, weights);
+            vfloat w = opacity * near;
             for (int c = 0; c < 3; ++c) sum[c] = fma(w, v_load(colour + c * p->plane + at), sum[c]);
         }
     vmask inside = v_lt((vint)(x) + v_iota, (vint)(p->width)), some = v_gt(weights, (vfloat)(0.0f)) & inside;

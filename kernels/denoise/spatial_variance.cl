@@ -14,11 +14,11 @@ __kernel void spatial_variance(__constant FilterParams* p, __global const float*
         for (int i = -RADIUS; i <= RADIUS; ++i) {
             int at = centre + j * p->row + i;
             Features there = load_features(p, features, at);
-            vfloat w = v_load(features + at) * v_exp(feature_distance(&here, &there) * p->feature);
-            vfloat l = luminance(v_load(colour + at), v_load(colour + p->plane + at), v_load(colour + 2 * p->plane + at)), wl = w * l;
-            weights += w;
-            first += wl;
-            second = fma(wl, l, second);
+            vfloat opacity = v_load(features + at), near = v_exp(feature_distance(&here, &there) * p->feature), w = opacity * near;
+            vfloat l = luminance(v_load(colour + at), v_load(colour + p->plane + at), v_load(colour + 2 * p->plane + at));
+            weights = fma(opacity, near, weights);
+            first = fma(w, l, first);
+            second = fma(w * l, l, second);
         }
     vmask inside = v_lt((vint)(x) + v_iota, (vint)(p->width)), some = v_gt(weights, (vfloat)(0.0f)) & inside;
     vfloat divisor = v_select(some, weights, (vfloat)(1.0f)), mean = first / divisor;

@@ -10,9 +10,9 @@ static inline vfloat smooth_variance(__constant FilterParams* p, __global const 
     for (int j = -1; j <= 1; ++j)
         for (int i = -1; i <= 1; ++i) {
             int at = centre + j * p->row + i;
-            vfloat w = v_load(features + at) * (float)((2 - i * i) * (2 - j * j));
-            weights += w;
-            sum = fma(w, v_load(variance + at), sum);
+            vfloat opacity = v_load(features + at), tap = (vfloat)((float)((2 - i * i) * (2 - j * j)));
+            weights = fma(opacity, tap, weights);
+            sum = fma(opacity * tap, v_load(variance + at), sum);
         }
     return sum / v_select(v_gt(weights, (vfloat)(0.0f)), weights, (vfloat)(1.0f));
 }
@@ -36,8 +36,8 @@ __kernel void wavelet(__constant FilterParams* p, __global const float* features
             for (int k = 0; k < 3; ++k) c[k] = v_load(colour + k * p->plane + at);
             vfloat apart = v_min(fabs(luminance(c[0], c[1], c[2]) - level), (vfloat)(1e6f));
             vfloat exponent = fma(feature_distance(&here, &there), (vfloat)(p->feature), apart * sharpness);
-            vfloat w = v_load(features + at) * spline[i < 0 ? -i : i] * spline[j < 0 ? -j : j] * v_exp(exponent);
-            weights += w;
+            vfloat tap = v_load(features + at) * (spline[i < 0 ? -i : i] * spline[j < 0 ? -j : j]), near = v_exp(exponent), w = tap * near;
+            weights = fma(tap, near, weights);
             for (int k = 0; k < 3; ++k) sum[k] = fma(w, c[k], sum[k]);
             sum[3] = fma(w * w, v_load(colour + 3 * p->plane + at), sum[3]);
         }

@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <csignal>
@@ -99,6 +100,20 @@ TEST_F(Learning, TrainsDenoisesAndCompares) {
     EXPECT_THAT(maps.out, HasSubstr("flip"));
     EXPECT_TRUE(exists("e.flip.png") && exists("e.difference.png"));
 
+    const Outcome e = run({"eval", path("a"), "--model", path("m.safetensors"), "--tune", path("a"), "--report", path("r.html"), "--json"});
+    ASSERT_EQ(e.exit_code, 0) << e.err;
+    const auto json = nlohmann::json::parse(e.out);
+    for (const char* name : {"noisy", "m", "cross-bilateral", "wavelet"})
+        for (const char* measure : {"psnr", "ssim", "ssim_opaque", "rmse", "smape", "relmse", "flip"})
+            EXPECT_TRUE(json["mean"][name][measure].is_number()) << name << measure;
+    ASSERT_EQ(json["views"].size(), 3u);
+    EXPECT_NEAR(json["views"][0]["m"]["psnr"].get<double>(), nlohmann::json::parse(c.out)["psnr"].get<double>(), 1e-9);
+    EXPECT_EQ(json["views"][0]["frame"], "view_0000_noisy_0.exr");
+    const std::string html = text(path("r.html"));
+    EXPECT_THAT(html, AllOf(HasSubstr("data:image/png;base64,"), HasSubstr("training loss"), HasSubstr("reference"), HasSubstr("FLIP")));
+    EXPECT_EQ(html.find("http://"), html.npos);
+    EXPECT_EQ(html.find("<script"), html.npos);
+
     const Outcome r = run({"render", path("ball_24x20x16_uint8.raw"), "--size", "30x26", "--spp", "1", "--denoise", "--model",
                            path("m.safetensors"), "-o", path("r.exr"), "-o", path("r.png")});
     ASSERT_EQ(r.exit_code, 0) << r.err;
@@ -132,6 +147,8 @@ TEST_F(Learning, RefusesWithOneLine) {
         {{"compare", path("none.exr"), path("none.exr"), "--tonemap", "sepia"}, 2},
         {{"compare", path("none.png"), path("none.png")}, 3},
         {{"compare", path("ball_24x20x16_uint8.json"), path("none.png")}, 3},
+        {{"eval", path("none")}, 2},
+        {{"eval", path("none"), "--model", path("none.safetensors")}, 3},
         {{"denoise", path("none.exr"), "-o", path("d.png")}, 2},
         {{"denoise", path("none.exr"), "-o", path("d.png"), "--model", path("none.safetensors")}, 3},
         {{"denoise", path("none.exr"), "-o", path("d.png"), "--model", path("ball_24x20x16_uint8.raw")}, 3},

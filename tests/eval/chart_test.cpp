@@ -1,0 +1,34 @@
+#include "host/eval/chart.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace clvr {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(LineChart, DrawsEverySeries) {
+    const std::string svg = line_chart("a < b", "epoch", {{"one", {1, 2, 3}}, {"two", {3, std::nan(""), 1}}});
+    EXPECT_THAT(svg, AllOf(HasSubstr("a &lt; b"), HasSubstr("one"), HasSubstr("two"), HasSubstr("epoch"), Not(HasSubstr("nan"))));
+    // Greatest and smallest value lie a little inside the axes (28 to 236), the middle one between.
+    EXPECT_THAT(svg, HasSubstr("56.0,226.5 302.0,132.0 548.0,37.5"));
+}
+
+TEST(LineChart, OfOneValueAndOfNone) {
+    EXPECT_THAT(line_chart("t", "x", {{"s", {5}}}), AllOf(HasSubstr("302.0,132.0"), Not(HasSubstr("nan")), Not(HasSubstr("inf"))));
+    EXPECT_EQ(line_chart("t", "x", {{"s", {}}}), "");
+    EXPECT_EQ(line_chart("t", "x", {{"s", {std::nan("")}}}), "");
+}
+
+TEST(LineChart, Logarithmic) {
+    const std::string svg = line_chart("t", "x", {{"s", {0.01, 0.1, 1}}}, true);
+    EXPECT_THAT(svg, AllOf(HasSubstr(">0.01<"), HasSubstr(">0.1<"), HasSubstr(",132.0")));
+    EXPECT_THAT(line_chart("t", "x", {{"s", {-1, 1}}}, true), HasSubstr(">0<")); // cannot be: linear
+}
+
+} // namespace
+} // namespace clvr
