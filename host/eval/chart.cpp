@@ -81,7 +81,7 @@ std::string line_chart(const std::string& title, const std::string& x_label, con
     };
 
     std::string svg =
-        fmt::format("<svg viewBox=\"0 0 560 280\" class=\"chart\" role=\"img\"><text x=\"{}\" y=\"16\" class=\"title\">{}</text>\n", left,
+        fmt::format("<svg viewBox=\"0 0 560 300\" class=\"chart\" role=\"img\"><text x=\"{}\" y=\"16\" class=\"title\">{}</text>\n", left,
                     escaped(title));
     for (const double v : axis.ticks())
         svg += fmt::format("<line x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\" class=\"grid\"/><text x=\"{3}\" y=\"{4:.1f}\" "
@@ -103,7 +103,7 @@ std::string line_chart(const std::string& title, const std::string& x_label, con
         svg += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n", points, colour);
         const double at = left + static_cast<double>(s) * (right - left) / static_cast<double>(series.size());
         svg +=
-            fmt::format("<rect x=\"{0:.1f}\" y=\"270\" width=\"10\" height=\"3\" fill=\"{1}\"/><text x=\"{2:.1f}\" y=\"276\">{3}</text>\n",
+            fmt::format("<rect x=\"{0:.1f}\" y=\"288\" width=\"10\" height=\"3\" fill=\"{1}\"/><text x=\"{2:.1f}\" y=\"294\">{3}</text>\n",
                         at, colour, at + 14, escaped(series[s].name));
     }
     return svg + "</svg>\n";

@@ -10,7 +10,7 @@ struct Series {
     std::vector<double> values; ///< at x = 1, 2, ...; what is not finite is left out
 };
 
-/// A chart of 560 x 280 units with axes, round ticks and a legend; text is escaped. An empty string when no value is finite. `logarithmic`:
+/// A chart of 560 x 300 units with axes, round ticks and a legend; text is escaped. An empty string when no value is finite. `logarithmic`:
 /// of y, when all values are above 0.
 std::string line_chart(const std::string& title, const std::string& x_label, const std::vector<Series>& series, bool logarithmic = false);
 

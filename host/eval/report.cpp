@@ -26,7 +26,7 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums } th, td {
 th:first-child, td:first-child { text-align: left } td.best { font-weight: 600 }
 .row { display: flex; flex-wrap: wrap; gap: 8px } figure { margin: 0 } figcaption { font-size: .85em; color: #555 }
 figure img { display: block; background: #000 } img.crop { image-rendering: pixelated; width: 288px; height: 288px }
-.chart { width: 560px; height: 280px; font: 11px system-ui, sans-serif } .chart .grid { stroke: #e4e4e4 } .chart .title { font-size: 13px }
+.chart { width: 560px; height: 300px; font: 11px system-ui, sans-serif } .chart .grid { stroke: #e4e4e4 } .chart .title { font-size: 13px }
 .notes { color: #555 } details { margin-top: 1em }
 )";
 
