@@ -9,6 +9,7 @@ build=(build-essential cmake ninja-build
     ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd           # OpenCL, and a device that every machine has
     libinsighttoolkit5-dev libgdcm-dev libtiff-dev zlib1g-dev         # volume files
     libopenexr-dev libpng-dev libstb-dev                              # pictures
+    libclblast-dev                                                    # matrix products in training
     libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev) # command line, JSON, text, checksums
 test=(libgtest-dev libgmock-dev clang-14 clang-format-14 gcovr oclgrind mesa-opencl-icd)
 

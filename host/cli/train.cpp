@@ -17,7 +17,7 @@ namespace {
 
 struct Options {
     std::vector<std::string> folders, channels = reference_channels();
-    std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant";
+    std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant", convolution = "direct";
     TrainerConfig trainer;
     int hidden = 20, kernel = 5;
     bool resume = false, no_augment = false, plain = false;
@@ -66,6 +66,8 @@ void check(const Options& o) {
     range("--micro-batch", o.trainer.step.micro_batch, 0, 65536);
     range("--lr", o.trainer.learning_rate, 1e-12, 10);
     range("--clip-norm", o.trainer.step.clip_norm, 0, 1e12);
+    if (o.convolution != "direct" && o.convolution != "clblast")
+        throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected direct or clblast", o.convolution), "--conv");
     if (o.schedule != "constant" && o.schedule != "cosine")
         throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected constant or cosine", o.schedule), "--schedule");
 }
@@ -73,6 +75,7 @@ void check(const Options& o) {
 void train(Options o) {
     check(o);
     o.trainer.step.loss = loss_of(o);
+    o.trainer.step.convolution = o.convolution == "clblast" ? ConvolutionBackend::clblast : ConvolutionBackend::direct;
     o.trainer.cosine = o.schedule == "cosine";
     o.trainer.augment = !o.no_augment;
     check_writable(o.output);
@@ -121,6 +124,9 @@ void add_train_command(CLI::App& app) {
     c->add_option("--target", o->target, "reference, or noisy: another noisy frame of the view [reference]")->group("Training");
     c->add_flag("--no-augment", o->no_augment, "Without the 8 dihedral transforms")->group("Training");
     c->add_option("--seed", t.seed, "Of initialisation and patches [0]")->group("Training");
+    c->add_option("--conv", o->convolution,
+                  "Convolutions: direct (clvr's kernels, the same bits on every device), or clblast (im2col and CLBlast's SGEMM) [direct]")
+        ->group("Training");
     c->add_option("--micro-batch", t.step.micro_batch, "Patches on the device at once; 0: what fits [0]")->group("Training");
     c->add_option("--channels", o->channels, "Input channels by their names in frames [R G B albedo normal depth]")
         ->delimiter(',')

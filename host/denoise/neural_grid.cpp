@@ -226,6 +226,10 @@ void NeuralGrid::guide_network(int images) {
 
 void NeuralGrid::forward(int images) {
     guide_network(images);
+    grids(images);
+}
+
+void NeuralGrid::grids(int images) {
     for (int l = 0; l < levels_; ++l) splat(l, images, splatted_, 0, cells_, false);
     slice(images);
 }

@@ -77,8 +77,9 @@ public:
     const Buffer& result() const { return result_; }             ///< planes, 3, or 3 + 3 levels with `show`
     const Buffer& target() const { return target_; }             ///< planes, 3
 
-    /// The stages alone.
+    /// The stages alone: forward() is guide_network() and then grids().
     void guide_network(int images);
+    void grids(int images);
     /// Splats float4 colours (from image `first_image` of `pixels` on) into a level of `cells`: means and weights, or with `sums` the sums.
     void splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums);
     void slice(int images);

@@ -76,6 +76,7 @@ Gradients::Gradients(const Device& device, const Model& model, Loss loss, const 
     upstream_ = device_.buffer(16 * forward.pixels() * static_cast<std::size_t>(levels_), "gradient of the levels");
     cell_gradient_ = device_.buffer(forward.cells().bytes(), "gradient of the grids");
     lanes_ = device_.buffer(images * parameters_ * lanes * 4, "gradients by lane");
+    device_.fill(lanes_, 0); // matrices leave those of the weights alone
     loss_lanes_ = device_.buffer(images * static_cast<std::size_t>(p.height) * lanes * 4, "losses by lane");
     row_losses_ = device_.buffer(images * static_cast<std::size_t>(p.height) * 4, "losses by row");
     nothing_ = device_.buffer(16, "no gradient of the colours");
@@ -84,7 +85,7 @@ Gradients::Gradients(const Device& device, const Model& model, Loss loss, const 
 void Gradients::set_parameters(const Buffer& parameters) { to_hidden_.set_parameters(device_, parameters); }
 
 void Gradients::backward(NeuralGrid& forward, int images, float share, const Buffer& patch_gradients, const Buffer& patch_losses,
-                         std::size_t first) {
+                         std::size_t first, MatrixLayers* matrices) {
     const shared::DenoiseParams& p = forward.shape();
     const auto n = static_cast<std::size_t>(images), rows = n * static_cast<std::size_t>(p.height);
     const double pixels = static_cast<double>(p.width) * p.height * images;
@@ -105,11 +106,15 @@ void Gradients::backward(NeuralGrid& forward, int images, float share, const Buf
     device_.launch(normalise_gradient_, {cells}, normalise_gradient_.group(64), {48.0 * cells, 0}, forward.cells(), cell_gradient_, cells);
     device_.launch(guide_gradient_, all, forward.pixel_group(), {pixels * (16 + 280 * levels_), 0}, forward.params(), forward.outputs(),
                    forward.cells(), cell_gradient_, forward.splatted(), upstream_, output_gradient_, nothing_);
-    to_hidden_.run(device_, p, images, forward.params(), output_gradient_, hidden_gradient_, forward.hidden());
-    weight_gradients(forward, images, patch_gradients, first);
+    if (matrices)
+        matrices->hidden_gradient(forward, images, output_gradient_, hidden_gradient_);
+    else
+        to_hidden_.run(device_, p, images, forward.params(), output_gradient_, hidden_gradient_, forward.hidden());
+    weight_gradients(forward, images, patch_gradients, first, matrices);
 }
 
-void Gradients::weight_gradients(NeuralGrid& forward, int images, const Buffer& patch_gradients, std::size_t first) {
+void Gradients::weight_gradients(NeuralGrid& forward, int images, const Buffer& patch_gradients, std::size_t first,
+                                 MatrixLayers* matrices) {
     const shared::DenoiseParams& p = forward.shape();
     const auto n = static_cast<std::size_t>(images);
     const double pixels = static_cast<double>(p.width) * p.height * images;
@@ -124,13 +129,14 @@ void Gradients::weight_gradients(NeuralGrid& forward, int images, const Buffer& 
         device_.launch(bias_gradient_, {lane_items, static_cast<std::size_t>(channels), n}, {lane_items}, {4 * pixels * channels, 0},
                        forward.params(), gradient, channels, lanes_, count, static_cast<cl_uint>(at));
     };
-    weights(weight_gradient1_, channels_, hidden_, block1_, forward.input(), hidden_gradient_, 0);
+    if (!matrices) weights(weight_gradient1_, channels_, hidden_, block1_, forward.input(), hidden_gradient_, 0);
     biases(hidden_, hidden_gradient_, conv1_);
-    weights(weight_gradient2_, hidden_, outputs_, block2_, forward.hidden(), output_gradient_, conv1_ + bias1_);
+    if (!matrices) weights(weight_gradient2_, hidden_, outputs_, block2_, forward.hidden(), output_gradient_, conv1_ + bias1_);
     biases(outputs_, output_gradient_, conv1_ + bias1_ + conv2_);
     const auto sums = static_cast<cl_uint>(n * parameters_);
     device_.launch(sum_lanes_, {sums}, sum_lanes_.group(64), {68.0 * sums, 0}, lanes_, patch_gradients,
                    static_cast<cl_uint>(first * parameters_), sums);
+    if (matrices) matrices->weight_gradients(forward, images, output_gradient_, hidden_gradient_, patch_gradients, first);
 }
 
 } // namespace clvr

@@ -1,6 +1,7 @@
 // The backward pass of NeuralGrid: from its result to the gradient of every parameter, each image apart.
 #pragma once
 #include "host/denoise/neural_grid.hpp"
+#include "host/train/matrix_layers.hpp"
 #include "host/train/training_step.hpp"
 
 namespace clvr {
@@ -14,8 +15,9 @@ public:
     void set_parameters(const Buffer& parameters);
     /// After forward.forward(images): the gradients of the first `images` images become rows first .. of `patch_gradients`
     /// [..][parameters], their losses elements first .. of `patch_losses`. `share` is what a colour of a pixel counts in the mean.
+    /// `matrices` convolve in place of the direct kernels, where given.
     void backward(NeuralGrid& forward, int images, float share, const Buffer& patch_gradients, const Buffer& patch_losses,
-                  std::size_t first);
+                  std::size_t first, MatrixLayers* matrices = nullptr);
 
     /// Device bytes beside those of the forward pass, and the largest single buffer of both.
     static std::size_t bytes(const Device& device, const Model& model, const BatchShape& shape);
@@ -38,7 +40,7 @@ private:
     Convolution to_hidden_;
     Buffer result_gradient_, upstream_, cell_gradient_, output_gradient_, hidden_gradient_, lanes_, loss_lanes_, row_losses_, nothing_;
 
-    void weight_gradients(NeuralGrid& forward, int images, const Buffer& patch_gradients, std::size_t first);
+    void weight_gradients(NeuralGrid& forward, int images, const Buffer& patch_gradients, std::size_t first, MatrixLayers* matrices);
 };
 
 } // namespace clvr

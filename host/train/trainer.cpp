@@ -45,6 +45,7 @@ std::string configuration_of(const Model& model, const TrainerConfig& c, const s
     nlohmann::ordered_json levels = nlohmann::ordered_json::array();
     for (const auto& l : model.levels) levels.push_back({l.pixels, l.codes});
     return nlohmann::ordered_json{{"loss", static_cast<int>(c.step.loss)},
+                                  {"convolution", c.step.convolution == ConvolutionBackend::clblast ? "clblast" : "direct"},
                                   {"patch", c.step.patch},
                                   {"batch", c.step.batch},
                                   {"epochs", c.epochs},

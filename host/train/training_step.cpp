@@ -39,6 +39,7 @@ struct TrainingStep::State {
     int micro = 1;
     std::unique_ptr<NeuralGrid> grid;
     std::unique_ptr<Gradients> gradients;
+    std::unique_ptr<MatrixLayers> matrices; // null: the direct kernels convolve
     std::vector<Image> images;
     Buffer parameter_values, first_moment, second_moment, scale, crop_planes;
     Buffer patch_gradients; // [batch][parameters]
@@ -55,8 +56,14 @@ struct TrainingStep::State {
 
     BatchShape shape(int patches) const { return {config.patch, config.patch, patches, false, true}; }
     std::size_t bytes(int patches) const {
-        return NeuralGrid::bytes(device, start, shape(patches)) + Gradients::bytes(device, start, shape(patches));
+        return NeuralGrid::bytes(device, start, shape(patches)) + Gradients::bytes(device, start, shape(patches)) +
+               (by_matrices() ? MatrixLayers::bytes(start, shape(patches)) : 0);
     }
+    std::size_t largest_bytes(int patches) const {
+        return std::max(Gradients::largest_bytes(device, start, shape(patches)),
+                        by_matrices() ? MatrixLayers::largest_bytes(start, shape(patches)) : 0);
+    }
+    bool by_matrices() const { return config.convolution == ConvolutionBackend::clblast; }
 
     void assemble(const Crop& crop, int n) {
         Image& image = images.at(static_cast<std::size_t>(crop.image));
@@ -92,12 +99,17 @@ struct TrainingStep::State {
             throw Error(ErrorKind::internal, fmt::format("a step over {} patches; its batch is {}", crops.size(), config.batch));
         grid->set_parameters(parameter_values);
         gradients->set_parameters(parameter_values);
+        if (matrices) matrices->set_parameters(parameter_values);
         const float share = static_cast<float>(1.0 / (3.0 * config.patch * config.patch * static_cast<double>(crops.size())));
         for (std::size_t first = 0; first < crops.size(); first += static_cast<std::size_t>(micro)) {
             const int n = static_cast<int>(std::min(crops.size() - first, static_cast<std::size_t>(micro)));
             for (int i = 0; i < n; ++i) assemble(crops[first + static_cast<std::size_t>(i)], i);
-            grid->forward(n);
-            gradients->backward(*grid, n, share, patch_gradients, patch_losses, first);
+            if (matrices)
+                matrices->forward(*grid, n);
+            else
+                grid->guide_network(n);
+            grid->grids(n);
+            gradients->backward(*grid, n, share, patch_gradients, patch_losses, first, matrices.get());
         }
         sum(patch_gradients, gradient, 0, parameters, 1, parameters, crops.size());
         sum(patch_losses, step_losses, waiting, 1, 1, 1, crops.size());
@@ -115,14 +127,14 @@ TrainingStep::TrainingStep(const Device& device, const Model& model, const StepC
     State& s = *state_;
     validate(model);
     const auto fits = [&](int patches) {
-        return s.bytes(patches) <= s.device.free_bytes() / 2 &&
-               Gradients::largest_bytes(s.device, model, s.shape(patches)) <= s.device.max_alloc_bytes();
+        return s.bytes(patches) <= s.device.free_bytes() / 2 && s.largest_bytes(patches) <= s.device.max_alloc_bytes();
     };
     s.micro =
         config.micro_batch > 0 ? std::min(config.micro_batch, config.batch) : std::min(config.batch, s.device.tunable("micro_batch", 8));
     while (s.micro > 1 && !fits(s.micro)) s.micro = (s.micro + 1) / 2;
     s.grid = std::make_unique<NeuralGrid>(s.device, model, s.shape(s.micro));
     s.gradients = std::make_unique<Gradients>(s.device, model, config.loss, *s.grid, s.shape(s.micro));
+    if (s.by_matrices()) s.matrices = std::make_unique<MatrixLayers>(s.device, model, s.shape(s.micro));
     s.parameter_values = s.device.upload(model.flat(), "parameters");
     for (Buffer* b : {&s.first_moment, &s.second_moment, &s.gradient}) {
         *b = s.device.buffer(s.parameters * 4, "moments");

@@ -2,6 +2,7 @@
 #pragma once
 #include "host/denoise/model.hpp"
 #include "host/frame/frame.hpp"
+#include "host/train/matrix_layers.hpp"
 #include "runtime/device.hpp"
 
 #include <cstdint>
@@ -22,6 +23,7 @@ struct Crop {
 
 struct StepConfig {
     Loss loss = Loss::shifted_gamma;
+    ConvolutionBackend convolution = ConvolutionBackend::direct;
     int patch = 256;     ///< width and height [pixels]
     int batch = 128;     ///< patches of a step
     int micro_batch = 0; ///< patches on the device at once; 0: what memory allows (the same bits for any)

@@ -1,7 +1,8 @@
 // GuideNet's hidden layer, CLVR_WIDTH pixels at once: convolution of the network's input, then leaky ReLU with slope 0.2 (SPEC.md section 3).
+#include "lib/activation.clh"
 #include "lib/convolution.clh"
 
-#define LEAKY(sum, at) v_select(v_gt(sum, (vfloat)(0.0f)), sum, 0.2f * (sum))
+#define LEAKY(sum, at) v_leaky(sum)
 
 __kernel void hidden(__constant DenoiseParams* p, __global const float* in, __global const float* weights, __global const float* bias, __global float* out) {
     CONVOLVE(p, in, weights, bias, out, LEAKY)

@@ -1,8 +1,9 @@
 // The loss by the hidden layer's sums: dL/dp1 from dL/dp2 (SPEC.md section 8), CLVR_WIDTH pixels at once. A convolution with the mirrored, transposed weights, times the slope of
-// the leaky ReLU, whose output has the sign of its input.
+// the leaky ReLU.
+#include "lib/activation.clh"
 #include "lib/convolution.clh"
 
-#define SLOPED(sum, at) v_select(v_gt(v_load(activated + (at)), (vfloat)(0.0f)), sum, 0.2f * (sum))
+#define SLOPED(sum, at) v_leaky_gradient(sum, v_load(activated + (at)))
 
 __kernel void hidden_gradient(__constant DenoiseParams* p, __global const float* in, __global const float* weights, __global const float* bias,
                               __global float* out, __global const float* activated) {

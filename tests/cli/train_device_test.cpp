@@ -143,6 +143,7 @@ TEST_F(Learning, RefusesWithOneLine) {
         {{"train", "-o", path("m.safetensors")}, 2},
         {{"train", path("none"), "-o", path("m.safetensors")}, 3},
         {{"train", path("none"), "-o", path("m.safetensors"), "--loss", "huber"}, 2},
+        {{"train", path("none"), "-o", path("m.safetensors"), "--conv", "fft"}, 2},
         {{"compare", path("none.exr"), path("none.exr"), "--map", path("e.exr")}, 2},
         {{"compare", path("none.exr"), path("none.exr"), "--tonemap", "sepia"}, 2},
         {{"compare", path("none.png"), path("none.png")}, 3},

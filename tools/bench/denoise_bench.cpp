@@ -52,8 +52,9 @@ void denoise(Device& device, const Model& model, int width, int height) {
                t[2] * 1e3, t[2] / t[1], device.used_bytes() * 1e-6);
 }
 
-void train(Device& device, const Model& model, int patches) {
+void train(Device& device, const Model& model, int patches, ConvolutionBackend convolution) {
     StepConfig config;
+    config.convolution = convolution;
     config.batch = patches;
     TrainingStep step(device, model, config);
     const Frame frame = noisy_frame(512, 512);
@@ -61,7 +62,8 @@ void train(Device& device, const Model& model, int patches) {
     std::vector<Crop> crops;
     for (int i = 0; i < patches; ++i) crops.push_back({0, 8 * i, 16 * i, i % 8});
     const auto t = bench::in_turn({[&] { step.step(crops, 1e-4), step.take_losses(); }}, 9);
-    fmt::print("training step of {} patches of 256x256: {:.0f} ms ({:.0f} a second)\n", patches, t[0] * 1e3, patches / t[0]);
+    fmt::print("training step of {} patches of 256x256: {:.0f} ms ({:.0f} a second), {} convolutions\n", patches, t[0] * 1e3,
+               patches / t[0], convolution == ConvolutionBackend::clblast ? "CLBlast" : "direct");
 }
 
 } // namespace
@@ -74,7 +76,7 @@ int main(int argc, char** argv) {
         initialise(model, 1);
         denoise(device, model, 1280, 720);
         denoise(device, model, 1920, 1080);
-        train(device, model, 8);
+        for (const auto convolution : {ConvolutionBackend::direct, ConvolutionBackend::clblast}) train(device, model, 8, convolution);
         device.finish();
         fmt::print("{}", device.profile().table());
         return 0;

@@ -35,5 +35,6 @@ only kernels/probe shared/ lib/ trust_operations.h
 
 nowhere_but 'runtime/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'
 nowhere_but 'host/io/[a-z_]*\.cpp' '#\s*include\s*[<"](itk|ImfF?|png\.h|stb_|zlib\.h)'
+nowhere_but 'host/train/matrix_layers\.cpp' '#\s*include\s*<clblast'
 complain "the runtime knows no volume, no image, no network" "$(grep -rniE 'volume|brick|voxel|guide|denoise' runtime || true)"
 exit $status
