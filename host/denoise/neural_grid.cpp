@@ -197,7 +197,8 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
     const int first = source_pixel(0, 0);
     const shared::int4 from{first, source_pixel(1, 0) - first, source_pixel(0, 1) - first, n};
     const auto size = static_cast<cl_uint>(source_width) * static_cast<cl_uint>(source_height);
-    device_.launch(assemble_, pixel_items(1), pixel_group(),
+    // Turned images are read down their columns: 16 rows at once find what they share in the first-level cache (10 % on PoCL).
+    device_.launch(assemble_, pixel_items(1), is_cpu(device_) ? Range{1, 16} : pixel_group(),
                    {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, source_params_, source,
                    size, from, channel_list_, input_, splatted_, remodulation_, target_);
 }

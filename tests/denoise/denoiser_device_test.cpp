@@ -48,6 +48,12 @@ TEST(Denoiser, GivesTheSameBitsInTiles) {
     EXPECT_EQ(denoised_hash({}, frame, test_model(), std::size_t{20} << 20), hash);
 }
 
+TEST(Denoiser, TakesLessThan400MegabytesAt1080p) {
+    Device device = test_device();
+    Denoiser(device, test_model()).denoise(noisy_frame(1920, 1080));
+    EXPECT_LT(device.peak_bytes(), 400u * 1000 * 1000);
+}
+
 TEST(Denoiser, TilesOfOddLevels) {
     Model model = test_model();
     model.levels = {{3, 5}, {6, 64}, {10, 256}};

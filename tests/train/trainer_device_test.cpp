@@ -307,6 +307,45 @@ TEST_F(TrainerFiles, RefusesFoldersThatCannotServe) {
     } catch (const Error& e) {
         EXPECT_THAT(e.line(), HasSubstr("smaller than a patch of 41"));
     }
+    write_exr(pair_of(48, 1).second, path("train/" + reference_name(2)));
+    try {
+        train(config(), "m.safetensors", false);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_THAT(e.line(), HasSubstr("is 40 x 40 pixels, its target 48 x 48"));
+        EXPECT_THAT(e.line(), HasSubstr(noisy_name(2, 0)));
+    }
+}
+
+TEST_F(TrainerFiles, OneImageIsEnoughAndNoneIsNot) {
+    std::filesystem::create_directories(folder.path() / "one");
+    const auto [noisy, clean] = pair_of(40, 3);
+    write_exr(noisy, path("one/" + noisy_name(0, 0)));
+    write_exr(clean, path("one/" + reference_name(0)));
+    const auto describe = [&](const std::string& views) {
+        folder.write("one/pairs.json",
+                     R"({"clvr.format": "pairs/1", "split": "train", "noisy_frames": 1, "reference_spp": 4, "views": [)" + views + "]}");
+    };
+    describe("{}");
+    TrainerConfig c = config();
+    c.epochs = 1;
+    EXPECT_TRUE(
+        Trainer(device, start_model(), c, {path("one")}, "", path("one.safetensors"), false).run({}, [](const TrainerProgress&) {}));
+    describe("");
+    EXPECT_THROW(Trainer(device, start_model(), c, {path("one")}, "", path("one.safetensors"), false), Error);
+}
+
+TEST_F(TrainerFiles, RefusesABatchThatCannotFit) {
+    pairs("train");
+    TrainerConfig c = config();
+    c.step.batch = 50000; // whose gradients alone take 1.5 GB
+    device.set_memory_limit(std::size_t{1} << 30);
+    try {
+        train(c, "m.safetensors", false);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::memory);
+    }
 }
 
 TEST(EpochCrops, CoverEveryOffsetAndOrientation) {
