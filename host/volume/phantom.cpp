@@ -1,6 +1,7 @@
-// Drives kernels/volume/phantom.cl: lists the parts that matter to each cell of voxels, launches, converts to the type asked for.
+// Drives kernels/volume/{head,snake,beetle,vessels,foam}.cl: lists the parts that matter to each cell of voxels, launches, converts to the
+// type asked for.
 #include "host/volume/phantom.hpp"
-#include "host/volume/phantom_anatomy.hpp"
+#include "host/volume/phantom_parts.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -11,7 +12,6 @@ namespace {
 
 using namespace shared;
 
-constexpr Double3 box_low{-96.8, -127, -122}, box_size{193.6, 242, 255.2}; ///< [mm]
 constexpr Int3 cell_voxels{CLVR_CELL_X, CLVR_CELL_Y, CLVR_CELL_Z};
 constexpr int launch_voxels = 2 << 20; ///< about 0.1 s on two cores
 
@@ -21,25 +21,26 @@ struct PartLists {
 };
 
 /// Whether the part has an effect is decided by the kernel for each voxel; here it only must not be missed.
-PartLists list_parts(Device& device, const Anatomy& anatomy, const Int3& first_voxel, const Int3& cells, const Double3& spacing) {
-    std::vector<std::vector<uint>> of(static_cast<std::size_t>(cells[0]) * cells[1] * cells[2] * CLVR_BODIES);
+PartLists list_parts(Device& device, const MadeVolume& made, const Int3& first_voxel, const Int3& cells, const Double3& spacing) {
+    std::vector<std::vector<uint>> of(static_cast<std::size_t>(cells[0]) * cells[1] * cells[2] * made.bodies.size());
     uint part_index = 0;
-    for (int body = 0; body < CLVR_BODIES; ++body)
-        for (const PhantomPart& part : anatomy[body]) {
+    for (std::size_t body = 0; body < made.bodies.size(); ++body)
+        for (const PhantomPart& part : made.bodies[body].parts) {
             const double reach = part.center.w + 2 * CLVR_PHANTOM_BEND;
-            for (const double side : {1.0, -1.0}) { // bodies but the vessels are mirrored
-                if (side < 0 && (body == CLVR_VESSELS || part.center.x == 0)) continue;
+            for (const double side : {1.0, -1.0}) {
+                if (side < 0 && (!made.bodies[body].mirrored || part.center.x == 0)) continue;
                 const Double3 center{side * part.center.x, part.center.y, part.center.z};
                 Int3 low, high;
                 for (int a = 0; a < 3; ++a) {
-                    const double from_first = center[a] - box_low[a] - first_voxel[a] * spacing[a], cell_mm = cell_voxels[a] * spacing[a];
+                    const double from_first = center[a] - made.box_low[a] - first_voxel[a] * spacing[a],
+                                 cell_mm = cell_voxels[a] * spacing[a];
                     low[a] = std::max(static_cast<int>(std::floor((from_first - reach) / cell_mm)), 0);
                     high[a] = std::min(static_cast<int>(std::floor((from_first + reach) / cell_mm)), cells[a] - 1);
                 }
                 for (int z = low[2]; z <= high[2]; ++z)
                     for (int y = low[1]; y <= high[1]; ++y)
                         for (int x = low[0]; x <= high[0]; ++x) {
-                            auto& parts = of[((static_cast<std::size_t>(z) * cells[1] + y) * cells[0] + x) * CLVR_BODIES + body];
+                            auto& parts = of[((static_cast<std::size_t>(z) * cells[1] + y) * cells[0] + x) * made.bodies.size() + body];
                             if (parts.empty() || parts.back() != part_index) parts.push_back(part_index);
                         }
             }
@@ -71,13 +72,21 @@ void store(const std::vector<std::int16_t>& hu, std::size_t first, Voxels& v) {
 
 } // namespace
 
-std::vector<std::string> phantom_names() { return {"head", "head-closed"}; }
+std::vector<std::string> phantom_names() { return {"head", "head-closed", "beetle", "snake", "vessels", "foam"}; }
 
-Voxels make_phantom(Device& device, const std::string& name, const Int3& dims, VoxelType type, std::uint64_t seed) {
+Voxels make_phantom(Device& device, const std::string& name, const PhantomOptions& options) {
     const std::vector<std::string> names = phantom_names();
     if (std::find(names.begin(), names.end(), name) == names.end())
         throw Error(ErrorKind::usage, fmt::format("there is no such computed volume; there are: {}", fmt::join(names, ", ")),
                     "demo:" + name);
+    const std::uint64_t seed = options.seed;
+    const MadeVolume made = name == "beetle"    ? beetle_volume(seed)
+                            : name == "snake"   ? snake_volume(seed)
+                            : name == "vessels" ? vessel_volume(seed)
+                            : name == "foam"    ? foam_volume()
+                                                : head_volume(name == "head");
+    const Int3 dims = options.dims.value_or(made.dims);
+    const VoxelType type = options.type.value_or(made.type);
     if (*std::min_element(dims.begin(), dims.end()) < 1 || *std::max_element(dims.begin(), dims.end()) > 2048)
         throw Error(ErrorKind::usage, fmt::format("expected 1 to 2048 voxels along each axis, found {}", fmt::join(dims, "x")),
                     "demo:" + name);
@@ -91,29 +100,28 @@ Voxels make_phantom(Device& device, const std::string& name, const Int3& dims, V
     v.modality = "CT";
     set_scale(v);
     for (int a = 0; a < 3; ++a) {
-        v.geometry.spacing[a] = box_size[a] / dims[a];
-        v.geometry.origin[a] = box_low[a] + v.geometry.spacing[a] / 2;
+        v.geometry.spacing[a] = made.box_size[a] / dims[a];
+        v.geometry.origin[a] = made.box_low[a] + v.geometry.spacing[a] / 2;
     }
 
     const auto float4_of = [](const Double3& xyz, double w) {
         return float4{static_cast<float>(xyz[0]), static_cast<float>(xyz[1]), static_cast<float>(xyz[2]), static_cast<float>(w)};
     };
     const Double3& spacing = v.geometry.spacing;
-    const double ramp_mm = std::min(1.6 * *std::max_element(spacing.begin(), spacing.end()), 4.0);
+    const double ramp_mm = std::min(made.ramp * *std::max_element(spacing.begin(), spacing.end()), 4.0);
     const auto cells_for = [](int voxels, int axis) { return (voxels + cell_voxels[axis] - 1) / cell_voxels[axis]; };
     PhantomParams params{};
     params.dims = {dims[0], dims[1], dims[2], 0};
     params.cells = {cells_for(dims[0], 0), cells_for(dims[1], 1), 0, 0};
     params.origin = float4_of(v.geometry.origin, 1 / ramp_mm);
     params.spacing = float4_of(spacing, 0);
-    std::copy(body_far.begin(), body_far.end(), params.far);
+    for (std::size_t k = 0; k < made.bodies.size(); ++k) params.far[k] = made.bodies[k].far;
     params.key0 = static_cast<uint>(seed);
     params.key1 = static_cast<uint>(seed >> 32) ^ 0x51ed270bu;
-    params.opened = name == "head";
+    params.opened = made.opened;
 
-    const Anatomy anatomy = head_anatomy();
     std::vector<PhantomPart> all_parts;
-    for (const auto& body : anatomy) all_parts.insert(all_parts.end(), body.begin(), body.end());
+    for (const auto& body : made.bodies) all_parts.insert(all_parts.end(), body.parts.begin(), body.parts.end());
     const Buffer params_buffer = device.upload(std::vector<PhantomParams>{params}, "phantom parameters");
     const Buffer parts = device.upload(all_parts, "phantom parts");
 
@@ -122,11 +130,11 @@ Voxels make_phantom(Device& device, const std::string& name, const Int3& dims, V
               launch_slices = launch_cells * CLVR_CELL_Z;
     const Buffer out = device.buffer(slice_voxels * std::min(launch_slices, dims[2]) * sizeof(std::int16_t), "phantom");
     const int width = device.tunable("packet", device.facts().type == DeviceType::cpu ? 16 : 1);
-    Kernel kernel = device.kernel("volume/phantom", {{"CLVR_WIDTH", std::to_string(width)}});
+    Kernel kernel = device.kernel("volume/" + made.kernel, {{"CLVR_WIDTH", std::to_string(width)}});
     const Range group = kernel.group(static_cast<std::size_t>(device.tunable("phantom_group", width == 1 ? 64 : 1)));
     for (int z = 0; z < dims[2]; z += launch_slices) {
         const int slices = std::min(launch_slices, dims[2] - z);
-        const PartLists lists = list_parts(device, anatomy, {0, 0, z}, {params.cells.x, params.cells.y, cells_for(slices, 2)}, spacing);
+        const PartLists lists = list_parts(device, made, {0, 0, z}, {params.cells.x, params.cells.y, cells_for(slices, 2)}, spacing);
         const Range packets{static_cast<std::size_t>((dims[0] + width - 1) / width), static_cast<std::size_t>(dims[1]),
                             static_cast<std::size_t>(slices)};
         const Work work{static_cast<double>(slice_voxels * slices * sizeof(std::int16_t)), 0};

@@ -1,4 +1,4 @@
-// The parts that a computed head is made of: smooth solids in millimetres, joined or cut one after the other.
+// The parts that computed volumes are made of: smooth solids in millimetres, joined or cut one after the other.
 #ifndef CLVR_SHARED_PHANTOM_H
 #define CLVR_SHARED_PHANTOM_H
 #include "shared/types.h"
@@ -8,7 +8,7 @@ CLVR_SHARED_BEGIN
 #define CLVR_PART_BLOCK 1     // sum of fourth powers of q = 1: an ellipsoid with square shoulders
 #define CLVR_PART_TUBE 2      // round, its radius linear from end to end
 
-/// A solid. x is to the patient's left, y posterior, z up; the origin lies between the ear canals.
+/// A solid. x is to the left of a patient or an animal, y posterior, z up.
 typedef struct PhantomPart {
     float4 center; ///< w: beyond this distance from the centre the part has no effect
     float4 a;      ///< ellipsoid and block: a row of the matrix to the unit body (q = rows . (p - center)), w: 1 / radius; tube: start, w:
@@ -22,7 +22,7 @@ typedef struct PhantomPart {
 } PhantomPart;
 CLVR_CHECK_SIZE(PhantomPart, 80);
 
-/// What is made of a list of parts; the order of the lists.
+/// What is made of a list of parts of the head; the order of the lists.
 enum PhantomBody {
     CLVR_SKIN,   ///< the outline of the head
     CLVR_CAVITY, ///< inside of the braincase and of the spinal canal
@@ -38,6 +38,9 @@ enum PhantomBody {
     CLVR_VESSELS, ///< with contrast agent; the only ones that are not mirrored
     CLVR_BODIES
 };
+enum SnakeBody { CLVR_SNAKE_EGG, CLVR_SNAKE_FLESH, CLVR_SNAKE_GUT, CLVR_SNAKE_BONE, CLVR_SNAKE_BODIES };
+enum BeetleBody { CLVR_BEETLE_TRUNK, CLVR_BEETLE_LIMBS, CLVR_BEETLE_HAIRS, CLVR_BEETLE_BODIES };
+enum VesselBody { CLVR_VESSEL_LOBE, CLVR_VESSEL_TREE, CLVR_VESSEL_BODIES };
 
 /// The kernel displaces points by less than this along an axis [mm].
 #define CLVR_PHANTOM_BEND 1.5f

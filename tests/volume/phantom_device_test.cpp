@@ -42,14 +42,14 @@ TEST(Phantom, HasTheSameBitsAtEveryPacketWidthAndGroup) {
         device.set_tunable("packet", packet);
         device.set_tunable("phantom_group", group);
         // A change of the head changes this hash, on purpose only.
-        EXPECT_EQ(hash_of(make_phantom(device, "head", odd_dims)), "f6d6b98202598b10d0c3feddcaff233ff62995d9efa799a5635959488a604317")
+        EXPECT_EQ(hash_of(make_phantom(device, "head", {odd_dims})), "f6d6b98202598b10d0c3feddcaff233ff62995d9efa799a5635959488a604317")
             << "packets of " << packet << " in groups of " << group;
     }
 }
 
 TEST(Phantom, HasItsTissuesWhereTheyBelong) {
     Device device = open_device();
-    const Voxels v = make_phantom(device, "head-closed", half_dims);
+    const Voxels v = make_phantom(device, "head-closed", {half_dims});
     EXPECT_EQ(v.modality, "CT");
     EXPECT_EQ(v.slope, 1);
     EXPECT_EQ(v.intercept, 0);
@@ -71,7 +71,7 @@ TEST(Phantom, HasItsTissuesWhereTheyBelong) {
 
 TEST(Phantom, OpensOnThePatientsLeftOnly) {
     Device device = open_device();
-    const Voxels opened = make_phantom(device, "head", half_dims), closed = make_phantom(device, "head-closed", half_dims);
+    const Voxels opened = make_phantom(device, "head", {half_dims}), closed = make_phantom(device, "head-closed", {half_dims});
     std::size_t same_right = 0, right = 0, changed_left = 0;
     for (std::size_t i = 0; i < opened.count(); ++i) {
         const bool same = opened.data<std::int16_t>()[i] == closed.data<std::int16_t>()[i];
@@ -88,9 +88,9 @@ TEST(Phantom, OpensOnThePatientsLeftOnly) {
 
 TEST(Phantom, KeepsItsValuesInEveryType) {
     Device device = open_device();
-    const Voxels hu = make_phantom(device, "head", odd_dims);
+    const Voxels hu = make_phantom(device, "head", {odd_dims});
     for (const VoxelType type : {VoxelType::u8, VoxelType::i8, VoxelType::u16, VoxelType::f32}) {
-        const Voxels v = make_phantom(device, "head", odd_dims, type);
+        const Voxels v = make_phantom(device, "head", {odd_dims, type});
         ASSERT_EQ(v.bytes.size(), v.count() * voxel_bytes(type));
         for (int z = 0; z < odd_dims[2]; ++z)
             for (int y = 0; y < odd_dims[1]; ++y)
@@ -104,16 +104,16 @@ TEST(Phantom, KeepsItsValuesInEveryType) {
 
 TEST(Phantom, FollowsItsSeed) {
     Device device = open_device();
-    const Voxels first = make_phantom(device, "head", odd_dims, VoxelType::i16, 1);
-    EXPECT_EQ(hash_of(first), hash_of(make_phantom(device, "head", odd_dims, VoxelType::i16, 1)));
-    EXPECT_NE(hash_of(first), hash_of(make_phantom(device, "head", odd_dims, VoxelType::i16, 2)));
-    EXPECT_NE(hash_of(first), hash_of(make_phantom(device, "head", odd_dims, VoxelType::i16, std::uint64_t{1} << 32 | 1)));
+    const Voxels first = make_phantom(device, "head", {odd_dims, VoxelType::i16, 1});
+    EXPECT_EQ(hash_of(first), hash_of(make_phantom(device, "head", {odd_dims, VoxelType::i16, 1})));
+    EXPECT_NE(hash_of(first), hash_of(make_phantom(device, "head", {odd_dims, VoxelType::i16, 2})));
+    EXPECT_NE(hash_of(first), hash_of(make_phantom(device, "head", {odd_dims, VoxelType::i16, std::uint64_t{1} << 32 | 1})));
 }
 
 TEST(Phantom, TakesAwkwardDims) {
     Device device = open_device();
     for (const Int3& dims : {Int3{1, 1, 1}, Int3{1, 33, 7}, Int3{17, 1, 40}, Int3{300, 2, 9}}) {
-        const Voxels v = make_phantom(device, "head", dims);
+        const Voxels v = make_phantom(device, "head", {dims});
         EXPECT_EQ(v.dims, dims);
         EXPECT_EQ(v.bytes.size(), 2 * v.count());
     }
@@ -123,14 +123,14 @@ TEST(Phantom, RefusesWhatItDoesNotKnow) {
     Device device = open_device();
     const auto refused = [&](const std::string& name, const Int3& dims, const std::string& expected) {
         try {
-            make_phantom(device, name, dims);
+            make_phantom(device, name, {dims});
             ADD_FAILURE() << name;
         } catch (const Error& e) {
             EXPECT_EQ(e.kind(), ErrorKind::usage);
             EXPECT_NE(e.line().find(expected), std::string::npos) << e.line();
         }
     };
-    refused("torso", phantom_dims, "head, head-closed");
+    refused("torso", odd_dims, "head, head-closed");
     refused("head", {0, 10, 10}, "0x10x10");
     refused("head", {10, 10, 2049}, "10x10x2049");
 }

@@ -1,110 +1,11 @@
-// Where the parts of the computed head are. Sizes after an average adult; nothing here is a scan. No libm but sqrt, so the tables are the
-// same everywhere.
-#include "host/volume/phantom_anatomy.hpp"
-
-#include <algorithm>
+// Where the parts of the computed head are. Sizes after an average adult; nothing here is a scan.
+#include "host/volume/phantom_parts.hpp"
 
 namespace clvr {
 namespace {
 
-using namespace shared;
-
-/// A point of a tube's path and the tube's radius there.
-struct Node {
-    double x, y, z, radius;
-};
-
-Double3 place(const Node& n) { return {n.x, n.y, n.z}; }
-float4 packed(const Double3& v, double w) {
-    return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(w)};
-}
-
-/// The direction (0, c, s) of a line that rises by `slope` per unit.
-Double3 rising(double slope) { return unit({0, 1, slope}); }
-
-/// Appends parts to one body.
-class Body {
-public:
-    Body(Anatomy& anatomy, PhantomBody body) : parts_(anatomy[body]), far_(body_far[body]) {}
-
-    /// Semi-axes r around c; the solid is tilted so that its y axis rises by `slope`, and turned outwards so that its x axis moves back by
-    /// `turn` per unit.
-    Body& ellipsoid(const Double3& c, const Double3& r, double blend, double slope = 0, double turn = 0) {
-        return solid(CLVR_PART_ELLIPSOID, 1, c, r, blend, slope, turn);
-    }
-    Body& block(const Double3& c, const Double3& r, double blend, double slope = 0, double turn = 0) {
-        return solid(CLVR_PART_BLOCK, 1, c, r, blend, slope, turn);
-    }
-    Body& cut(const Double3& c, const Double3& r, double blend, double slope = 0, double turn = 0) {
-        return solid(CLVR_PART_ELLIPSOID, -1, c, r, blend, slope, turn);
-    }
-    /// Straight pieces from node to node.
-    Body& tube(const std::vector<Node>& nodes, double blend, int sign = 1) {
-        for (std::size_t i = 0; i + 1 < nodes.size(); ++i) segment(nodes[i], nodes[i + 1], blend, sign);
-        return *this;
-    }
-    /// A smooth curve through the nodes (Catmull-Rom), `pieces` straight pieces between two of them.
-    Body& curve(const std::vector<Node>& nodes, double blend, int pieces = 4, int sign = 1) {
-        const int last = static_cast<int>(nodes.size()) - 1;
-        Node from = nodes[0];
-        for (int i = 0; i < last; ++i)
-            for (int k = 1; k <= pieces; ++k) {
-                const double t = static_cast<double>(k) / pieces;
-                const Double3 p0 = place(nodes[std::max(i - 1, 0)]), p1 = place(nodes[i]), p2 = place(nodes[i + 1]),
-                              p3 = place(nodes[std::min(i + 2, last)]);
-                const Double3 p =
-                    (p1 * 2 + (p2 - p0) * t + (p0 * 2 - p1 * 5 + p2 * 4 - p3) * (t * t) + (p1 * 3 - p0 - p2 * 3 + p3) * (t * t * t)) * 0.5;
-                const Node to{p[0], p[1], p[2], nodes[i].radius + t * (nodes[i + 1].radius - nodes[i].radius)};
-                segment(from, to, blend, sign);
-                from = to;
-            }
-        return *this;
-    }
-    /// A curve and its mirror image, for bodies that are not mirrored.
-    Body& curves(std::vector<Node> nodes, double blend, int pieces = 4) {
-        curve(nodes, blend, pieces);
-        for (Node& n : nodes) n.x = -n.x;
-        return curve(nodes, blend, pieces);
-    }
-
-private:
-    Body& solid(int kind, int sign, const Double3& c, const Double3& r, double blend, double slope, double turn) {
-        const Double3 y_tilted = rising(slope), z_tilted = cross({1, 0, 0}, y_tilted);
-        const Double3 along = unit({1, turn, 0}); // new x axis; the others follow the turn about z
-        const auto turned = [&](const Double3& v) {
-            return Double3{along[0] * v[0] - along[1] * v[1], along[1] * v[0] + along[0] * v[1], v[2]};
-        };
-        PhantomPart p{};
-        p.kind = kind;
-        p.a = packed(turned({1, 0, 0}) * (1 / r[0]), 1 / r[0]);
-        p.b = packed(turned(y_tilted) * (1 / r[1]), 1 / r[1]);
-        p.c = packed(turned(z_tilted) * (1 / r[2]), 1 / r[2]);
-        const double bound = kind == CLVR_PART_BLOCK ? norm(r) : std::max({r[0], r[1], r[2]});
-        return add(p, c, bound, blend, sign);
-    }
-    Body& segment(const Node& from, const Node& to, double blend, int sign) {
-        const Double3 axis = place(to) - place(from);
-        PhantomPart p{};
-        p.kind = CLVR_PART_TUBE;
-        p.a = packed(place(from), from.radius);
-        p.b = packed(axis, 1 / inner(axis, axis));
-        p.c = packed({to.radius - from.radius, 0, 0}, 0);
-        return add(p, (place(from) + place(to)) * 0.5, norm(axis) / 2 + std::max(from.radius, to.radius), blend, sign);
-    }
-    Body& add(PhantomPart p, const Double3& c, double bound, double blend, int sign) {
-        p.center = packed(c, bound + far_ + blend);
-        p.blend = static_cast<float>(blend);
-        p.quarter = static_cast<float>(0.25 / blend);
-        p.sign = static_cast<float>(sign);
-        parts_.push_back(p);
-        return *this;
-    }
-    std::vector<PhantomPart>& parts_;
-    double far_;
-};
-
-void outline(Anatomy& anatomy) {
-    Body skin(anatomy, CLVR_SKIN);
+void outline(MadeVolume& head) {
+    SolidBody skin(head.bodies[shared::CLVR_SKIN]);
     skin.ellipsoid({0, 3, 52}, {76, 97, 78}, 1)
         .ellipsoid({0, 44, 14}, {60, 50, 44}, 18)         // back of the head
         .ellipsoid({0, -40, 4}, {60, 50, 56}, 22)         // face
@@ -162,8 +63,8 @@ void outline(Anatomy& anatomy) {
         .ellipsoid({75, -2, 3}, {3, 4, 6}, 4);
 }
 
-void bones(Anatomy& anatomy) {
-    Body cavity(anatomy, CLVR_CAVITY);
+void bones(MadeVolume& head) {
+    SolidBody cavity(head.bodies[shared::CLVR_CAVITY]);
     cavity.ellipsoid({0, 1.5, 52}, {64, 87, 65.5}, 1)
         .cut({0, -72, -10}, {62, 46, 40}, 8)           // above the orbits
         .cut({0, -2, -16}, {80, 120, 22}, 8)           // base
@@ -174,7 +75,7 @@ void bones(Anatomy& anatomy) {
         .tube({{0, 26, -6, 15}, {0, 30, -26, 13}}, 8)
         .tube({{0, 30, -22, 11}, {0, 31, -150, 10}}, 5); // spinal canal
 
-    Body face(anatomy, CLVR_FACE);
+    SolidBody face(head.bodies[shared::CLVR_FACE]);
     face.ellipsoid({0, -84, 40}, {24, 8, 14}, 6)
         .tube({{4, -87, 31, 6}, {24, -86, 35, 5}, {40, -78, 33, 5}, {50, -65, 25, 5}}, 6) // brows
         .tube({{50, -65, 25, 4.5}, {51, -62, 12, 4.5}, {49, -62, 2, 5}}, 5)               // outer rim of the orbit
@@ -221,7 +122,7 @@ void bones(Anatomy& anatomy) {
             .tube({{18, y + 7, z, 4}, {27, y + 2, z - 2, 3.4}}, 3);
     }
 
-    Body teeth(anatomy, CLVR_TEETH);
+    SolidBody teeth(head.bodies[shared::CLVR_TEETH]);
     struct Tooth {
         double x, y, width, depth; ///< of the crown [mm], half sizes
     };
@@ -239,8 +140,8 @@ void bones(Anatomy& anatomy) {
     }
 }
 
-void openings(Anatomy& anatomy) {
-    Body(anatomy, CLVR_AIR)
+void openings(MadeVolume& head) {
+    SolidBody(head.bodies[shared::CLVR_AIR])
         .ellipsoid({6.5, -57, -8}, {4.6, 32, 17}, 1)                              // nose, to each side of the septum
         .tube({{5.5, -106, -24, 2.8}, {5.5, -96, -15, 3.4}, {6, -84, -12, 4}}, 3) // nostrils
         .ellipsoid({0, -22, -10}, {13, 11, 16}, 5)                                // throat
@@ -252,9 +153,9 @@ void openings(Anatomy& anatomy) {
         .tube({{88, 5, 3, 3.2}, {70, 4, 2, 3.2}, {48, 2, 4, 3}}, 1) // ear canals
         .ellipsoid({54, 15, -14}, {4.5, 7, 11}, 1)                  // mastoid cells
         .ellipsoid({0, -72, -44.5}, {17, 14, 1.1}, 1);              // mouth
-    Body(anatomy, CLVR_ORBIT).ellipsoid({29, -64, 15.5}, {18.5, 31, 17}, 1, 0, 0.42);
-    Body(anatomy, CLVR_GLOBE).ellipsoid({32, -75, 15}, {12, 12, 12}, 1);
-    Body(anatomy, CLVR_STRANDS)
+    SolidBody(head.bodies[shared::CLVR_ORBIT]).ellipsoid({29, -64, 15.5}, {18.5, 31, 17}, 1, 0, 0.42);
+    SolidBody(head.bodies[shared::CLVR_GLOBE]).ellipsoid({32, -75, 15}, {12, 12, 12}, 1);
+    SolidBody(head.bodies[shared::CLVR_STRANDS])
         .tube({{30, -64, 15, 1.8}, {20, -42, 17, 1.8}, {12, -28, 19, 1.8}}, 1) // optic nerve
         .tube({{21, -70, 15, 1.8}, {16, -50, 16, 2.4}, {15, -36, 17, 1.6}}, 1) // straight muscles of the eye
         .tube({{43, -70, 15, 1.8}, {32, -50, 16, 2.4}, {18, -36, 17, 1.6}}, 1)
@@ -264,8 +165,8 @@ void openings(Anatomy& anatomy) {
         .tube({{10, -80, -5, 1.6}, {9, -58, -5, 2.4}, {9, -36, -5, 1.6}}, 1);
 }
 
-void brain(Anatomy& anatomy) {
-    Body(anatomy, CLVR_CEREBRUM)
+void brain(MadeVolume& head) {
+    SolidBody(head.bodies[shared::CLVR_CEREBRUM])
         .ellipsoid({0, 1.5, 53}, {61.5, 84.5, 62}, 1)
         .cut({0, -72, -10}, {64, 48, 43}, 8)
         .cut({0, 50, -8}, {62, 62, 33}, 5, 0.1)
@@ -273,10 +174,10 @@ void brain(Anatomy& anatomy) {
         .ellipsoid({34, -9, 17}, {23, 28, 18}, 7)
         .cut({0, -6, 10}, {14, 22, 20}, 5)
         .tube({{14, -24, 24, 2.5}, {42, -20, 28, 2.2}, {60, 12, 44, 1.2}}, 3, -1); // lateral furrow
-    Body(anatomy, CLVR_CEREBELLUM)
+    SolidBody(head.bodies[shared::CLVR_CEREBELLUM])
         .ellipsoid({20, 46, 5}, {26, 27, 19}, 4)
         .tube({{0, 8, 26, 11}, {0, 12, 6, 13}, {0, 22, -14, 8}, {0, 30, -28, 6.5}, {0, 31, -150, 5.5}}, 5); // brain stem and cord
-    Body(anatomy, CLVR_VENTRICLES)
+    SolidBody(head.bodies[shared::CLVR_VENTRICLES])
         .curve({{6, -30, 46, 3}, {9, -10, 56, 4.5}, {13, 16, 58, 4.5}, {24, 36, 46, 5.5}, {31, 20, 32, 3.5}, {33, 0, 22, 2.5}}, 3)
         .tube({{24, 36, 46, 4.5}, {20, 56, 44, 1.5}}, 3)
         .ellipsoid({0, 4, 40}, {2, 13, 8}, 2)
@@ -290,8 +191,8 @@ Node on_vault(double x, double y, double z, double height, double radius) {
     return {c[0] + s * d[0], c[1] + s * d[1], c[2] + s * d[2], radius};
 }
 
-void vessels(Anatomy& anatomy) {
-    Body v(anatomy, CLVR_VESSELS);
+void vessels(MadeVolume& head) {
+    SolidBody v(head.bodies[shared::CLVR_VESSELS]);
     // Carotid arteries, through the skull's base to the circle of Willis.
     v.curves({{24, 4, -150, 3.2},
               {24, 1, -100, 3.2},
@@ -406,14 +307,17 @@ void vessels(Anatomy& anatomy) {
 
 } // namespace
 
-Anatomy head_anatomy() {
-    Anatomy anatomy;
-    outline(anatomy);
-    bones(anatomy);
-    openings(anatomy);
-    brain(anatomy);
-    vessels(anatomy);
-    return anatomy;
+MadeVolume head_volume(bool opened) {
+    MadeVolume head{"head", {-96.8, -127, -122}, {193.6, 242, 255.2}, {176, 220, 232}, VoxelType::i16, {}, opened};
+    head.ramp = 1.6;
+    for (const float far : {26.f, 18.f, 9.f, 3.f, 5.f, 6.f, 3.f, 3.f, 22.f, 14.f, 4.f, 3.f}) head.bodies.push_back({far, true, {}});
+    head.bodies[shared::CLVR_VESSELS].mirrored = false;
+    outline(head);
+    bones(head);
+    openings(head);
+    brain(head);
+    vessels(head);
+    return head;
 }
 
 } // namespace clvr

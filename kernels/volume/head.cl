@@ -1,100 +1,9 @@
 // A head in Hounsfield units, computed: skin, skull, brain, vessels with contrast agent. A work-item makes CLVR_WIDTH voxels along x;
 // a launch makes some slices.
 //
-// Bodies are signed distances [mm, negative inside] of the parts that the host lists per cell of voxels (host/volume/phantom_anatomy.cpp);
-// tissues are painted one over the other, each with a ramp of partial volume. A layer behind v_any() has no effect on the lanes that did not
-// ask for it, so the packet's width does not matter. Smooth joins after I. Quilez, "smooth minimum" (the quadratic polynomial).
-#include "lib/math.clh"
-#include "lib/vec3.clh"
-#include "shared/phantom.h"
-
-static inline vfloat smooth_min(vfloat a, vfloat b, float blend, float quarter) {
-    vfloat h = v_max(blend - fabs(a - b), (vfloat)(0.0f));
-    return fma(h * h, (vfloat)(-quarter), v_min(a, b));
-}
-static inline vfloat smooth_max(vfloat a, vfloat b, float blend, float quarter) { return -smooth_min(-a, -b, blend, quarter); }
-
-// Never 0, so that it can divide.
-static inline vfloat length3(Vec3 v) { return sqrt(inner3(v, v) + 1e-12f); }
-static inline Vec3 offset3(Vec3 p, float x, float y, float z) { return vec3(p.x - x, p.y - y, p.z - z); }
-
-// Distance to a part's surface, to first order for ellipsoids and blocks: (f - 1) / |grad f|.
-static inline vfloat part_distance(__global const PhantomPart* part, Vec3 p) {
-    float4 a = part->a, b = part->b, c = part->c;
-    if (part->kind == CLVR_PART_TUBE) {
-        Vec3 from_start = offset3(p, a.x, a.y, a.z), axis = vec3_of(b);
-        vfloat t = v_clamp(inner3(from_start, axis) * b.w, (vfloat)(0.0f), (vfloat)(1.0f));
-        return length3(along(from_start, negated(axis), t)) - fma(t, (vfloat)(c.x), (vfloat)(a.w));
-    }
-    Vec3 d = offset3(p, part->center.x, part->center.y, part->center.z), inverse_radius = vec3((vfloat)(a.w), (vfloat)(b.w), (vfloat)(c.w));
-    Vec3 q = vec3(inner3(vec3_of(a), d), inner3(vec3_of(b), d), inner3(vec3_of(c), d));
-    if (part->kind == CLVR_PART_ELLIPSOID) {
-        vfloat f = length3(q);
-        return (f - 1.0f) * f / length3(product(q, inverse_radius));
-    }
-    Vec3 squared = product(q, q);
-    vfloat f2 = length3(squared), f = sqrt(f2);
-    return (f - 1.0f) * f * f2 / length3(product(product(squared, q), inverse_radius));
-}
-
-// The distance to a body; `start` is where this cell's lists of parts begin in `list`, by body.
-static inline vfloat body_distance(int body, float far, __global const PhantomPart* parts, __global const uint* start,
-                                   __global const uint* list, Vec3 p) {
-    vfloat d = (vfloat)(far);
-    for (uint i = start[body]; i < start[body + 1]; ++i) {
-        __global const PhantomPart* part = parts + list[i];
-        float4 center = part->center;
-        vmask near = v_lt(length3(offset3(p, center.x, center.y, center.z)), (vfloat)(center.w));
-        if (v_any(near)) {
-            vfloat b = part_distance(part, p);
-            vfloat joined = part->sign > 0 ? smooth_min(d, b, part->blend, part->quarter) : smooth_max(d, -b, part->blend, part->quarter);
-            d = v_select(near, v_clamp(joined, (vfloat)(-far), (vfloat)(far)), d);
-        }
-    }
-    return d;
-}
-
-// A hash of 32 bits (C. Wellons, "lowbias32").
-static inline vuint scrambled(vuint h) {
-    h = (h ^ (h >> 16)) * 0x7feb352du;
-    h = (h ^ (h >> 15)) * 0x846ca68bu;
-    return h ^ (h >> 16);
-}
-
-static inline vfloat faded(vfloat t) { return t * t * t * fma(t, fma(t, (vfloat)(6.0f), (vfloat)(-15.0f)), (vfloat)(10.0f)); }
-// -1..1 of ten bits.
-static inline vfloat component(vuint bits) { return fma(v_float(bits & 1023u), (vfloat)(1.0f / 512.0f), (vfloat)(-1.0f)); }
-
-// Gradient noise (K. Perlin, "Improving noise", 2002; gradients from a hash), about -0.8..0.8; one unit of its lattice is `period` mm.
-static inline vfloat noise(Vec3 p, float period, uint key) {
-    float per_mm = 1.0f / period;
-    vfloat fx = floor(p.x * per_mm), fy = floor(p.y * per_mm), fz = floor(p.z * per_mm), scale = (vfloat)(per_mm);
-    vfloat tx = fma(p.x, scale, -fx), ty = fma(p.y, scale, -fy), tz = fma(p.z, scale, -fz);
-    vuint ix = v_uint_of_int(v_int(fx)), iy = v_uint_of_int(v_int(fy)), iz = v_uint_of_int(v_int(fz));
-    vfloat plane[2], row[2], corner[2];
-    for (int k = 0; k < 2; ++k) {
-        for (int j = 0; j < 2; ++j) {
-            vuint h_row = (iy + (uint)(j)) * 0x9E3779B1u ^ (iz + (uint)(k)) * 0x85EBCA77u ^ (vuint)(key);
-            for (int i = 0; i < 2; ++i) {
-                vuint h = scrambled((ix + (uint)(i)) * 0xC2B2AE3Du ^ h_row);
-                Vec3 gradient = vec3(component(h), component(h >> 10), component(h >> 20));
-                corner[i] = inner3(gradient, vec3(tx - (float)(i), ty - (float)(j), tz - (float)(k)));
-            }
-            row[j] = fma(faded(tx), corner[1] - corner[0], corner[0]);
-        }
-        plane[k] = fma(faded(ty), row[1] - row[0], row[0]);
-    }
-    return fma(faded(tz), plane[1] - plane[0], plane[0]);
-}
-
-// 0 at a, 1 at b and beyond.
-static inline vfloat ramp(vfloat x, float a, float b) { return v_clamp((x - a) * (1.0f / (b - a)), (vfloat)(0.0f), (vfloat)(1.0f)); }
-// Share of a voxel inside of a surface at distance d.
-static inline vfloat inside(vfloat d, float per_mm) {
-    return v_clamp(fma(d, (vfloat)(-per_mm), (vfloat)(0.5f)), (vfloat)(0.0f), (vfloat)(1.0f));
-}
-static inline vfloat paint(vfloat hu, vfloat value, vfloat share) { return fma(share, value - hu, hu); }
-static inline vfloat paint_hu(vfloat hu, float value, vfloat share) { return paint(hu, (vfloat)(value), share); }
+// Bodies are solids (lib/solids.clh) of the parts in host/volume/phantom_anatomy.cpp; tissues are painted one over the other, each with a ramp of
+// partial volume.
+#include "lib/solids.clh"
 
 // Skin, fat under it, muscle with streaks of fat below.
 static inline vfloat flesh(Vec3 p, vfloat skin, float per_mm, uint key) {
@@ -201,42 +110,29 @@ static inline vfloat tissue(__constant const PhantomParams* params, const vfloat
     return paint_hu(hu, 360.0f, inside(v_max(body[CLVR_VESSELS], over_window), 1.4f * per_mm));
 }
 
-__kernel void phantom(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,
-                      __global const uint* list, int first_slice, int slices) {
-    int x0 = (int)get_global_id(0) * CLVR_WIDTH, y0 = (int)get_global_id(1), slice = (int)get_global_id(2), z0 = first_slice + slice;
-    int4 dims = params->dims;
-    if (x0 >= dims.x || y0 >= dims.y || slice >= slices) return;
-    int cell = (slice / CLVR_CELL_Z * params->cells.y + y0 / CLVR_CELL_Y) * params->cells.x + x0 / CLVR_CELL_X;
-    start += cell * CLVR_BODIES;
+__kernel void head(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,
+                   __global const uint* list, int first_slice, int slices) {
+    int x0 = (int)get_global_id(0) * CLVR_WIDTH, y0 = (int)get_global_id(1), slice = (int)get_global_id(2);
+    if (x0 >= params->dims.x || y0 >= params->dims.y || slice >= slices) return;
+    MadePacket m = made_packet(params, x0, y0, slice, first_slice);
+    start += m.cell * CLVR_BODIES;
 
-    vint ix = x0 + v_iota;
     vfloat hu = (vfloat)(-1000.0f);
     if (start[CLVR_SKIN] < start[CLVR_SKIN + 1]) {
-        float4 origin = params->origin, spacing = params->spacing;
-        Vec3 p = vec3(fma(v_float(ix), (vfloat)(spacing.x), (vfloat)(origin.x)), (vfloat)(fma((float)(y0), spacing.y, origin.y)),
-                      (vfloat)(fma((float)(z0), spacing.z, origin.z)));
+        Vec3 p = m.p;
         // No head is symmetric: a slow bend of space, below CLVR_PHANTOM_BEND mm.
         vfloat unused;
         p.x = fma(v_sincos_turns(fma(p.z, (vfloat)(0.006f), p.y * 0.004f), &unused), (vfloat)(1.2f), p.x);
         p.z = fma(v_sincos_turns(fma(p.x, (vfloat)(0.005f), (vfloat)(0.1f)), &unused), (vfloat)(0.8f), p.z);
         Vec3 folded = vec3(sqrt(fma(p.x, p.x, (vfloat)(0.04f))), p.y, p.z);
         vfloat body[CLVR_BODIES];
-        vmask head = -1;
+        vmask near = -1;
         for (int k = 0; k < CLVR_BODIES; ++k)
-            if (v_any(head)) {
+            if (v_any(near)) {
                 body[k] = body_distance(k, params->far[k], parts, start, list, k == CLVR_VESSELS ? p : folded);
-                if (k == CLVR_SKIN) head = v_lt(body[k], (vfloat)(2.0f));
+                if (k == CLVR_SKIN) near = v_lt(body[k], (vfloat)(2.0f));
             }
-        if (v_any(head)) hu = v_select(head, tissue(params, body, p, folded), hu);
+        if (v_any(near)) hu = v_select(near, tissue(params, body, p, folded), hu);
     }
-
-    // The scanner's noise: the sum of the four bytes of a hash, a deviation of about 9 HU.
-    vuint h = scrambled(v_uint_of_int(ix) + (uint)(z0 * dims.y + y0) * 0x9E3779B1u ^ (vuint)(params->key1));
-    vuint sum = (h & 255u) + ((h >> 8) & 255u) + ((h >> 16) & 255u) + (h >> 24);
-    hu = fma(v_float(sum), (vfloat)(0.0625f), hu - 31.875f);
-    vint rounded = v_int(floor(v_clamp(hu, (vfloat)(-1024.0f), (vfloat)(3071.0f)) + 0.5f));
-    int lanes[CLVR_WIDTH];
-    v_store(rounded, lanes);
-    size_t at = ((size_t)(slice)*dims.y + y0) * dims.x + x0;
-    for (int k = 0; k < CLVR_WIDTH && x0 + k < dims.x; ++k) out[at + k] = (short)(lanes[k]);
+    store_made(params, &m, hu, 1.0f, slice, out);
 }

@@ -1,0 +1,53 @@
+// Foam, torn by turbulence: the walls between the cells of scattered points (S. Worley, "A cellular texture basis function", 1996) in space that fractal
+// noise (K. Perlin) bends; in Hounsfield units, with nothing beyond a ball.
+#include "lib/solids.clh"
+
+#define PERIOD 11.0f // of the points' lattice [mm]
+
+// The second least less the least distance to a point, in units of the lattice: 0 on a wall.
+static inline vfloat wall_distance(Vec3 p, uint key) {
+    vfloat qx = p.x * (1.0f / PERIOD), qy = p.y * (1.0f / PERIOD), qz = p.z * (1.0f / PERIOD), nearest = (vfloat)(8.0f), second = nearest;
+    vfloat fx = floor(qx), fy = floor(qy), fz = floor(qz);
+    for (int k = 0; k < 27; ++k) {
+        vfloat cx = fx + (float)(k % 3 - 1), cy = fy + (float)(k / 3 % 3 - 1), cz = fz + (float)(k / 9 - 1);
+        vuint h = scrambled(v_uint_of_int(v_int(cx)) * 0xC2B2AE3Du ^ v_uint_of_int(v_int(cy)) * 0x9E3779B1u ^ v_uint_of_int(v_int(cz)) * 0x85EBCA77u ^ (vuint)(key));
+        // A point in the middle 80 % of its cell.
+        vfloat dx = fma(component(h), (vfloat)(0.4f), cx + 0.5f) - qx, dy = fma(component(h >> 10), (vfloat)(0.4f), cy + 0.5f) - qy,
+               dz = fma(component(h >> 20), (vfloat)(0.4f), cz + 0.5f) - qz;
+        vfloat d = length3(vec3(dx, dy, dz));
+        second = v_min(second, v_max(nearest, d));
+        nearest = v_min(nearest, d);
+    }
+    return second - nearest;
+}
+
+__kernel void foam(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,
+                   __global const uint* list, int first_slice, int slices) {
+    int x0 = (int)get_global_id(0) * CLVR_WIDTH, y0 = (int)get_global_id(1), slice = (int)get_global_id(2);
+    if (x0 >= params->dims.x || y0 >= params->dims.y || slice >= slices) return;
+    MadePacket m = made_packet(params, x0, y0, slice, first_slice);
+    start += m.cell;
+    uint key = params->key0;
+
+    vfloat hu = (vfloat)(-1000.0f);
+    vfloat ball = body_distance(0, params->far[0], parts, start, list, m.p);
+    if (v_any(v_lt(ball, (vfloat)(8.0f)))) {
+        // Octaves of noise bend space, more towards the top.
+        vfloat strength = ramp(m.p.z, -30.0f, 45.0f) * 9.0f;
+        Vec3 p = m.p;
+        vfloat swirl = (vfloat)(0.0f);
+        for (int octave = 0; octave < 4; ++octave) {
+            float period = 28.0f / (float)(1 << octave), share = 1.0f / (float)(1 << octave);
+            vfloat n = noise(m.p, period, key + 8u * (uint)(octave));
+            p.x = fma(n * share, strength, p.x);
+            p.y = fma(noise(m.p, period, key + 8u * (uint)(octave) + 1u) * share, strength, p.y);
+            p.z = fma(noise(m.p, period, key + 8u * (uint)(octave) + 2u) * share, strength, p.z);
+            swirl = fma(fabs(n), (vfloat)(share), swirl);
+        }
+        vfloat thick = fma(ramp(m.p.z, 45.0f, -45.0f), (vfloat)(0.5f), (vfloat)(0.45f)); // half a wall [mm]
+        vfloat wall = fma(wall_distance(p, key + 64u), (vfloat)(0.5f * PERIOD), -thick);
+        vfloat shape = v_max(wall, fma(swirl, (vfloat)(7.0f), ball));
+        hu = paint(hu, fma(swirl, (vfloat)(520.0f), (vfloat)(60.0f)), inside(shape, params->origin.w));
+    }
+    store_made(params, &m, hu, 1.0f, slice, out);
+}
