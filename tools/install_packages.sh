@@ -10,6 +10,7 @@ build=(build-essential cmake ninja-build
     libinsighttoolkit5-dev libgdcm-dev libtiff-dev zlib1g-dev         # volume files
     libopenexr-dev libpng-dev libstb-dev                              # pictures
     libclblast-dev                                                    # matrix products in training
+    libcurl4-openssl-dev                                              # downloads
     libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev) # command line, JSON, text, checksums
 test=(libgtest-dev libgmock-dev clang-14 clang-format-14 gcovr oclgrind mesa-opencl-icd)
 

@@ -13,5 +13,6 @@ void add_pairs_command(CLI::App& app);   // pairs.cpp
 void add_compare_command(CLI::App& app); // compare.cpp
 void add_train_command(CLI::App& app);   // train.cpp
 void add_eval_command(CLI::App& app);    // eval.cpp
+void add_dataset_command(CLI::App& app); // dataset.cpp
 
 } // namespace clvr

@@ -26,6 +26,7 @@ struct Options {
     std::string folder, tune, report;
     std::vector<std::string> models;
     Tonemap tonemap;
+    int frame = 0;
     bool json = false;
     DeviceOptions device;
 };
@@ -96,13 +97,13 @@ void eval(const Options& o) {
     Baselines baselines;
     if (!o.tune.empty()) {
         ProgressBar bar("choosing the baselines' settings", false);
-        baselines = best_baselines(device, o.tune, [&](double done) { bar.update(done, ""); });
+        baselines = best_baselines(device, o.tune, o.frame, [&](double done) { bar.update(done, ""); });
     }
     const std::vector<Candidate> all = candidates(device, models, baselines);
     Evaluation e;
     {
         ProgressBar bar("evaluating", false);
-        e = evaluate(all, o.folder, [&](double done) { bar.update(done, ""); });
+        e = evaluate(all, o.folder, o.frame, [&](double done) { bar.update(done, ""); });
     }
     if (!o.report.empty()) {
         ReportOptions r;
@@ -113,6 +114,7 @@ void eval(const Options& o) {
                                baselines.wavelet.feature, o.tune.empty() ? " (defaults)" : fmt::format(" (best of 3x3 on {})", o.tune)),
                    "PSNR and SSIM of clip(RGB, 0, 1)^(1/2.2) over black; RMSE, SMAPE and relMSE linear"};
         r.tonemap = o.tonemap;
+        r.frame = o.frame;
         r.trainings = trainings;
         const std::string html = html_report(e, all, o.folder, r);
         write_atomically(o.report, html.data(), html.size());
@@ -131,6 +133,7 @@ void add_eval_command(CLI::App& app) {
     auto o = std::make_shared<Options>();
     c->add_option("DIR", o->folder, "Folder that `clvr pairs --split test` made")->required();
     c->add_option("--model", o->models, "Trained network (.safetensors; may be given again)")->type_name("FILE");
+    c->add_option("--frame", o->frame, "Which noisy frame of each view, from 0 on, where there are several [0]");
     c->add_option("--tune", o->tune, "Choose the classical denoisers' settings on this folder of training pairs [defaults]")
         ->type_name("DIR");
     c->add_option("--report", o->report, "Also write one self-contained page with pictures, crops and curves")->type_name("FILE.html");

@@ -31,13 +31,15 @@ struct Options {
     RenderOptions scene;
     std::string folder, split = "train", zoom_range = "1,1";
     std::vector<std::string> variations;
+    std::vector<int> noisy_spp;
     int views = 100, reference_spp = 1024, noisy_frames = 1;
 };
 
 /// All that decides the frames of a folder: what pairs.json holds.
 struct Plan {
     std::string split;
-    int spp = 1, reference_spp = 1024, noisy_frames = 1;
+    std::vector<int> spp{1}; ///< of the noisy frames, in turn
+    int reference_spp = 1024, noisy_frames = 1;
     std::uint64_t seed = 0;
     std::vector<Scene> scenes; ///< one per transfer function; view v is of scene v modulo their number
     std::vector<ViewPoint> views;
@@ -62,7 +64,7 @@ Plan parse_plan(const std::string& text, const std::string& where) {
         const auto j = nlohmann::json::parse(text);
         if (j.at("clvr.format") != "pairs/1") throw Error(ErrorKind::input, "is of another format; expected pairs/1", where);
         Plan p{j.at("split").get<std::string>(),
-               j.at("spp").get<int>(),
+               j.at("spp").get<std::vector<int>>(),
                j.at("reference_spp").get<int>(),
                j.at("noisy_frames").get<int>(),
                j.at("seed").get<std::uint64_t>(),
@@ -71,7 +73,7 @@ Plan parse_plan(const std::string& text, const std::string& where) {
         for (const auto& v : j.at("views"))
             p.views.push_back({v.at("azimuth").get<double>(), v.at("elevation").get<double>(), v.at("zoom").get<double>()});
         for (const auto& s : j.at("scenes")) p.scenes.push_back(parse_scene(s.dump(), where));
-        if (p.views.empty() || p.scenes.empty()) throw Error(ErrorKind::input, "names no views", where);
+        if (p.views.empty() || p.scenes.empty() || p.spp.empty()) throw Error(ErrorKind::input, "names no views", where);
         return p;
     } catch (const nlohmann::json::exception& e) {
         throw Error(ErrorKind::input, fmt::format("is no pairs.json: {}", e.what()), where);
@@ -99,7 +101,8 @@ Plan plan_of(const Options& o) {
     Plan p;
     p.split = o.split;
     p.reference_spp = o.reference_spp;
-    p.noisy_frames = o.noisy_frames;
+    p.noisy_frames = o.noisy_frames * static_cast<int>(std::max<std::size_t>(1, o.noisy_spp.size()));
+    for (const int spp : o.noisy_spp) check("--noisy-spp", spp, 1, largest_spp);
     RenderOptions options = o.scene;
     if (!options.spp) options.spp = 1;
     for (std::size_t k = 0; k < std::max<std::size_t>(1, o.variations.size()); ++k) {
@@ -108,7 +111,7 @@ Plan plan_of(const Options& o) {
     }
     Scene& first = p.scenes.front();
     if (first.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures", "--mode");
-    p.spp = first.spp;
+    p.spp = o.noisy_spp.empty() ? std::vector<int>{first.spp} : o.noisy_spp;
     p.seed = first.seed;
     p.views = view_set(o.views, p.seed + (p.split == "test" ? 0x5bd1e995u : 0), low, high);
     for (Scene& s : p.scenes) {
@@ -189,7 +192,7 @@ void pairs(const Options& o) {
                 if (fs::exists(path)) continue;
                 Scene scene = plan.scenes[static_cast<std::size_t>(kind)];
                 scene.seed = seed_of(plan, role);
-                scene.spp = role == 0 ? plan.reference_spp : plan.spp;
+                scene.spp = role == 0 ? plan.reference_spp : plan.spp[static_cast<std::size_t>(role - 1) % plan.spp.size()];
                 scene.features = role != 0;
                 scene.camera.azimuth = plan.views[v].azimuth;
                 scene.camera.elevation = plan.views[v].elevation;
@@ -217,6 +220,10 @@ void add_pairs_command(CLI::App& app) {
     c->add_option("--views", o->views, "Number of views [100]")->group("Pairs");
     c->add_option("--reference-spp", o->reference_spp, "Samples per pixel of the references; 0: none [1024]")->group("Pairs");
     c->add_option("--noisy-frames", o->noisy_frames, "Independent noisy frames of each view [1]")->group("Pairs");
+    c->add_option("--noisy-spp", o->noisy_spp, "Samples per pixel of several noisy frames a view, as 1,2,4,8 [one of --spp]")
+        ->type_name("LIST")
+        ->delimiter(',')
+        ->group("Pairs");
     c->add_option("--split", o->split, "train or test: other views, other noise [train]")->group("Pairs");
     c->add_option("--zoom-range", o->zoom_range, "Zooms of the views, uniform [1,1]")->type_name("LOW,HIGH")->group("Pairs");
     c->add_option("--vary-tf", o->variations, "Transfer functions (presets or files) that the views take in turn")

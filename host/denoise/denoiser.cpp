@@ -3,6 +3,7 @@
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -110,6 +111,39 @@ struct Denoiser::State {
     }
 };
 
+namespace {
+
+/// Takes the result back towards the noisy input where that has converged (kernels/denoise/blend_by_variance.cl), in bands of rows.
+void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
+    constexpr int radius = 3, band = 256;
+    Kernel kernel = device.kernel("denoise/blend_by_variance");
+    const auto finite = [](std::vector<float> v) {
+        for (float& x : v) x = std::isfinite(x) ? x : 0;
+        return v;
+    };
+    for (const char* c : colours) {
+        std::vector<float>& to = done.channel(c);
+        const std::vector<float> from = to;
+        for (int y = 0; y < noisy.height; y += band) {
+            const int low = std::max(0, y - radius), count = std::min(band, noisy.height - y),
+                      high = std::min(noisy.height, y + count + radius);
+            const auto rows = [&](const std::vector<float>& plane) {
+                const auto begin = plane.begin() + static_cast<std::ptrdiff_t>(low) * noisy.width;
+                return device.upload(finite({begin, begin + static_cast<std::ptrdiff_t>(high - low) * noisy.width}), "rows to blend");
+            };
+            const std::size_t pixels = static_cast<std::size_t>(count) * noisy.width;
+            const Buffer result = device.buffer(pixels * 4, "blended rows");
+            device.launch(kernel, {static_cast<std::size_t>(noisy.width), static_cast<std::size_t>(count)}, kernel.group(64), {},
+                          rows(noisy.at(c)), rows(noisy.at(std::string("variance.") + c)), rows(from), noisy.width, high - low, y - low,
+                          count, result);
+            const std::vector<float> blended = device.download<float>(result, pixels);
+            std::copy(blended.begin(), blended.end(), to.begin() + static_cast<std::ptrdiff_t>(y) * noisy.width);
+        }
+    }
+}
+
+} // namespace
+
 Denoiser::Denoiser(const Device& device, const Model& model) : state_(std::make_unique<State>(device, model)) {
     validate(model);
     state_->parameters = state_->device.upload(model.flat(), "model");
@@ -152,6 +186,7 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
             if (c < 3 && background != frame.channels.end() && opacity) to[i] += (1 - (*opacity)[i]) * background->second[i];
         }
     }
+    if (frame.has("variance.R") && frame.has("variance.G") && frame.has("variance.B")) blend_by_variance(s.device, frame, done);
     done.attributes["clvr.denoised"] = "1";
     return done;
 }

@@ -5,6 +5,7 @@
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <memory>
 
 namespace clvr {
@@ -23,8 +24,11 @@ Metrics mean_of(const std::vector<Metrics>& views) {
     return mean;
 }
 
-PairsFolder with_references(const std::string& folder) {
+PairsFolder with_references(const std::string& folder, int frame) {
     PairsFolder pairs = read_pairs(folder);
+    const int frames = static_cast<int>(pairs.views.front().noisy.size());
+    if (frame < 0 || frame >= frames)
+        throw Error(ErrorKind::input, fmt::format("has {} noisy frames a view, from 0 on; no number {}", frames, frame), folder);
     if (pairs.views.front().reference.empty()) throw Error(ErrorKind::input, "has no references to measure against", folder);
     return pairs;
 }
@@ -53,24 +57,26 @@ std::vector<Candidate> candidates(const Device& device, const std::vector<std::p
     return all;
 }
 
-Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string& folder, const std::function<void(double)>& seen) {
-    const PairsFolder pairs = with_references(folder);
+Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string& folder, int frame,
+                    const std::function<void(double)>& seen) {
+    const PairsFolder pairs = with_references(folder, frame);
+    const auto noisy_of = [&](const PairView& view) { return view.noisy[static_cast<std::size_t>(frame)]; };
     Evaluation e;
     for (const auto& c : candidates) e.scores.push_back({c.name, {}, {}});
     for (const auto& view : pairs.views) {
-        const Frame noisy = read_exr(view.noisy.front()), reference = read_exr(view.reference);
-        e.views.push_back(view.noisy.front());
+        const Frame noisy = read_exr(noisy_of(view)), reference = read_exr(view.reference);
+        e.views.push_back(noisy_of(view));
         for (std::size_t k = 0; k < candidates.size(); ++k)
-            e.scores[k].views.push_back(
-                naming(view.noisy.front(), [&] { return compare_frames(candidates[k].denoise(noisy), reference); }));
+            e.scores[k].views.push_back(naming(noisy_of(view), [&] { return compare_frames(candidates[k].denoise(noisy), reference); }));
         if (seen) seen(static_cast<double>(e.views.size()) / static_cast<double>(pairs.views.size()));
     }
     for (Score& s : e.scores) s.mean = mean_of(s.views);
     return e;
 }
 
-Baselines best_baselines(const Device& device, const std::string& folder, const std::function<void(double)>& seen) {
-    const PairsFolder pairs = with_references(folder);
+Baselines best_baselines(const Device& device, const std::string& folder, int frame, const std::function<void(double)>& seen) {
+    const PairsFolder pairs = with_references(folder, frame);
+    const auto noisy_of = [&](const PairView& view) { return view.noisy[static_cast<std::size_t>(frame)]; };
     constexpr double factors[] = {0.5, 1, 2};
     std::vector<Baselines> grid;
     for (const double first : factors)
@@ -83,8 +89,8 @@ Baselines best_baselines(const Device& device, const std::string& folder, const 
     std::vector<double> bilateral(grid.size()), wavelet(grid.size());
     double done = 0;
     for (const auto& view : pairs.views) {
-        const Frame noisy = read_exr(view.noisy.front()), reference = read_exr(view.reference);
-        naming(view.noisy.front(), [&] {
+        const Frame noisy = read_exr(noisy_of(view)), reference = read_exr(view.reference);
+        naming(noisy_of(view), [&] {
             for (std::size_t k = 0; k < grid.size(); ++k) {
                 bilateral[k] += psnr(denoise(device, noisy, grid[k].cross_bilateral), reference);
                 wavelet[k] += psnr(denoise(device, noisy, grid[k].wavelet), reference);

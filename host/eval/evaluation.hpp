@@ -39,11 +39,12 @@ struct Evaluation {
     std::vector<Score> scores;      ///< in the candidates' order
 };
 
-/// Every view of a folder (its first noisy frame) through every candidate, against its reference. `seen` is called after each view with the
-/// share that is done. Throws Error{input} when the folder has no references.
-Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string& folder, const std::function<void(double)>& seen = {});
+/// Every view of a folder (noisy frame number `frame` of it) through every candidate, against its reference. `seen` is called after each
+/// view with the share that is done. Throws Error{input} when the folder has no references or no such frame.
+Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string& folder, int frame,
+                    const std::function<void(double)>& seen = {});
 
 /// The settings with the best mean PSNR over a folder, each of a 3x3 grid around the defaults (a factor of 2 between neighbours).
-Baselines best_baselines(const Device& device, const std::string& folder, const std::function<void(double)>& seen = {});
+Baselines best_baselines(const Device& device, const std::string& folder, int frame, const std::function<void(double)>& seen = {});
 
 } // namespace clvr

@@ -141,8 +141,9 @@ std::vector<std::size_t> telling_views(const Score& score) {
 }
 
 std::string view_section(const Evaluation& e, const std::vector<Candidate>& candidates, const PairView& files, std::size_t view,
-                         const Tonemap& tonemap) {
-    const Frame noisy = read_exr(files.noisy.front()), reference = read_exr(files.reference);
+                         const ReportOptions& options) {
+    const Tonemap& tonemap = options.tonemap;
+    const Frame noisy = read_exr(files.noisy[static_cast<std::size_t>(options.frame)]), reference = read_exr(files.reference);
     const auto [x, y] = most_detailed(reference);
     std::string pictures, crops, maps;
     const auto add = [&](const Frame& frame, const std::string& caption) {
@@ -184,7 +185,7 @@ std::string html_report(const Evaluation& e, const std::vector<Candidate>& candi
     html +=
         fmt::format("<div class=\"row\">{}{}</div>\n", line_chart("PSNR by view [dB]", "view", psnrs), training_charts(options.trainings));
     const Score& first = e.scores[std::min<std::size_t>(1, e.scores.size() - 1)];
-    for (const std::size_t view : telling_views(first)) html += view_section(e, candidates, pairs.views[view], view, options.tonemap);
+    for (const std::size_t view : telling_views(first)) html += view_section(e, candidates, pairs.views[view], view, options);
     html += "<details><summary>Every view</summary>\n";
     for (std::size_t v = 0; v < e.views.size(); ++v) {
         std::vector<std::pair<std::string, Metrics>> rows;

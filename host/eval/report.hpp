@@ -9,6 +9,7 @@
 namespace clvr {
 
 struct ReportOptions {
+    int frame = 0;                                              ///< the noisy frame of each view that was evaluated
     std::string title;                                          ///< heading
     std::vector<std::string> notes;                             ///< lines below it: device, model, settings
     Tonemap tonemap;                                            ///< of the pictures

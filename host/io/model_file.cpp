@@ -1,8 +1,10 @@
 #include "host/io/model_file.hpp"
+#include "host/io/embedded_models.hpp"
 #include "host/volume/json_fields.hpp"
 #include "runtime/error.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -121,7 +123,14 @@ TensorFile tensors_of(const Model& m) {
     return file;
 }
 
-Model read_model(const std::string& path) { return model_of(read_tensors(path), path); }
+Model read_model(const std::string& path) {
+    std::error_code failed;
+    if (path != "default" || std::filesystem::exists(path, failed)) return model_of(read_tensors(path), path);
+    const auto found = embedded_models().find("default.safetensors");
+    if (found == embedded_models().end())
+        throw Error(ErrorKind::usage, "no model given: add --model FILE, as `clvr train` writes it", "this build has no default model");
+    return model_of(parse_tensors(found->second, path), path);
+}
 void write_model(const Model& model, const std::string& path) { write_tensors(tensors_of(model), path); }
 
 } // namespace clvr

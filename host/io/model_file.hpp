@@ -7,8 +7,9 @@
 
 namespace clvr {
 
-/// Reads a model. A file without metadata, with 10 input channels, means the reference's channels and no preprocessing. Throws
-/// Error{input}: what is wrong with the header, a tensor, a shape or a weight, and what was expected.
+/// Reads a model; "default" (where there is no such file) is the one inside the binary. A file without metadata, with 10 input channels,
+/// means the reference's channels and no preprocessing. Throws Error{input}: what is wrong with the header, a tensor, a shape or a weight,
+/// and what was expected; Error{usage} when the binary has no default model.
 Model read_model(const std::string& path);
 /// Writes the four tensors in order, the settings and the notes as metadata; atomically.
 void write_model(const Model& model, const std::string& path);

@@ -111,22 +111,23 @@ const Tensor& TensorFile::at(const std::string& name) const {
 
 TensorFile read_tensors(const std::string& path) {
     check_readable(path);
-    std::ifstream in(path, std::ios::binary | std::ios::ate);
-    const auto size = static_cast<std::size_t>(in.tellg());
-    in.seekg(0);
-    unsigned char length[8];
-    if (size < 8 || !in.read(reinterpret_cast<char*>(length), 8))
+    std::ifstream in(path, std::ios::binary);
+    return parse_tensors({std::istreambuf_iterator<char>(in), {}}, path);
+}
+
+TensorFile parse_tensors(const std::string& bytes, const std::string& path) {
+    const std::size_t size = bytes.size();
+    if (size < 8)
         throw Error(ErrorKind::input, fmt::format("has {} bytes; a safetensors file begins with 8 that say how long its header is", size),
                     path);
     std::uint64_t header_bytes = 0;
-    for (int k = 7; k >= 0; --k) header_bytes = header_bytes << 8 | length[k];
+    for (int k = 7; k >= 0; --k) header_bytes = header_bytes << 8 | static_cast<unsigned char>(bytes[static_cast<std::size_t>(k)]);
     if (header_bytes > size - 8 || header_bytes > largest_header)
         throw Error(
             ErrorKind::input,
             fmt::format("says its header has {} bytes; the file has {} after it (no safetensors file, or cut off)", header_bytes, size - 8),
             path);
-    std::string text(header_bytes, ' ');
-    in.read(text.data(), static_cast<std::streamsize>(header_bytes));
+    const std::string text = bytes.substr(8, header_bytes);
     const json header = parse_json(text, path);
     if (!header.is_object()) throw Error(ErrorKind::input, "its header is no JSON object", path);
 
@@ -144,10 +145,10 @@ TensorFile read_tensors(const std::string& path) {
     std::size_t at = 0;
     try {
         for (const Entry& e : entries) {
-            const std::size_t bytes = checked_bytes(e.name, e.type, e.shape, available);
-            if (e.begin != at || e.end < e.begin || e.end - e.begin != bytes || e.end > available)
+            const std::size_t expected = checked_bytes(e.name, e.type, e.shape, available);
+            if (e.begin != at || e.end < e.begin || e.end - e.begin != expected || e.end > available)
                 throw Error(ErrorKind::input, fmt::format("tensor {} lies at bytes {} to {} of {}; expected {} bytes from {} on", e.name,
-                                                          e.begin, e.end, available, bytes, at));
+                                                          e.begin, e.end, available, expected, at));
             at = e.end;
         }
         if (at != available)
@@ -156,11 +157,9 @@ TensorFile read_tensors(const std::string& path) {
         throw Error(ErrorKind::input, e.line(), path);
     }
     for (const Entry& e : entries) {
-        Tensor t{e.type, e.shape, std::vector<unsigned char>(e.end - e.begin)};
-        in.read(reinterpret_cast<char*>(t.bytes.data()), static_cast<std::streamsize>(t.bytes.size()));
-        file.tensors.emplace_back(e.name, std::move(t));
+        const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(8 + header_bytes + e.begin);
+        file.tensors.emplace_back(e.name, Tensor{e.type, e.shape, {from, from + static_cast<std::ptrdiff_t>(e.end - e.begin)}});
     }
-    if (!in) throw Error(ErrorKind::input, "cannot be read to its end", path);
     return file;
 }
 

@@ -35,6 +35,8 @@ struct TensorFile {
 /// Reads and checks a file: header within the file and at most 16 MiB, known types, offsets that follow one another without gap or overlap
 /// and agree with the shapes. Throws Error{input}.
 TensorFile read_tensors(const std::string& path);
+/// The same of a file's bytes; `where` names them in errors.
+TensorFile parse_tensors(const std::string& bytes, const std::string& where);
 /// Writes the tensors in the given order, the header padded to 8 bytes with spaces; atomically.
 void write_tensors(const TensorFile& file, const std::string& path);
 

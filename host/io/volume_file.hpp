@@ -27,4 +27,10 @@ Voxels read_volume(const std::string& path, const VolumeReadOptions& options = {
 /// SHA-256 (hex) of dims, type and decoded voxels.
 std::string volume_sha256(const Voxels& v);
 
+/// Writes NIfTI-1, .nii or .nii.gz, with the stored values, their scale and the geometry (float32: as NIfTI keeps it); atomically. Throws
+/// Error{input}: another ending, too large, cannot be written.
+void write_nifti(const Voxels& voxels, const std::string& path);
+/// Throws Error{input} unless write_nifti could write there: called before the work starts.
+void check_nifti_path(const std::string& path);
+
 } // namespace clvr

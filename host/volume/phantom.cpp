@@ -108,7 +108,9 @@ Voxels make_phantom(Device& device, const std::string& name, const PhantomOption
         return float4{static_cast<float>(xyz[0]), static_cast<float>(xyz[1]), static_cast<float>(xyz[2]), static_cast<float>(w)};
     };
     const Double3& spacing = v.geometry.spacing;
-    const double ramp_mm = std::min(made.ramp * *std::max_element(spacing.begin(), spacing.end()), 4.0);
+    // Within the distances that the bodies keep: else what lies beyond would be painted, too.
+    double ramp_mm = std::min(1.6 * *std::max_element(spacing.begin(), spacing.end()), 4.0);
+    for (const MadeBody& body : made.bodies) ramp_mm = std::min(ramp_mm, 2.0 * static_cast<double>(body.far));
     const auto cells_for = [](int voxels, int axis) { return (voxels + cell_voxels[axis] - 1) / cell_voxels[axis]; };
     PhantomParams params{};
     params.dims = {dims[0], dims[1], dims[2], 0};

@@ -309,7 +309,6 @@ void vessels(MadeVolume& head) {
 
 MadeVolume head_volume(bool opened) {
     MadeVolume head{"head", {-96.8, -127, -122}, {193.6, 242, 255.2}, {176, 220, 232}, VoxelType::i16, {}, opened};
-    head.ramp = 1.6;
     for (const float far : {26.f, 18.f, 9.f, 3.f, 5.f, 6.f, 3.f, 3.f, 22.f, 14.f, 4.f, 3.f}) head.bodies.push_back({far, true, {}});
     head.bodies[shared::CLVR_VESSELS].mirrored = false;
     outline(head);

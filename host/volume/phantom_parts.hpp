@@ -26,7 +26,6 @@ struct MadeVolume {
     VoxelType type;            ///< by default
     std::vector<MadeBody> bodies;
     bool opened = false; ///< the head's window
-    double ramp = 1.6;   ///< width of the ramp of partial volume [voxels]
 };
 
 /// The volumes (phantom_head.cpp and so on). Seeds change how things grow.

@@ -31,7 +31,8 @@ __kernel void foam(__global short* out, __constant PhantomParams* params, __glob
 
     vfloat hu = (vfloat)(-1000.0f);
     vfloat ball = body_distance(0, params->far[0], parts, start, list, m.p);
-    if (v_any(v_lt(ball, (vfloat)(8.0f)))) {
+    vmask near = v_lt(ball, (vfloat)(8.0f));
+    if (v_any(near)) {
         // Octaves of noise bend space, more towards the top.
         vfloat strength = ramp(m.p.z, -30.0f, 45.0f) * 9.0f;
         Vec3 p = m.p;
@@ -47,7 +48,7 @@ __kernel void foam(__global short* out, __constant PhantomParams* params, __glob
         vfloat thick = fma(ramp(m.p.z, 45.0f, -45.0f), (vfloat)(0.5f), (vfloat)(0.45f)); // half a wall [mm]
         vfloat wall = fma(wall_distance(p, key + 64u), (vfloat)(0.5f * PERIOD), -thick);
         vfloat shape = v_max(wall, fma(swirl, (vfloat)(7.0f), ball));
-        hu = paint(hu, fma(swirl, (vfloat)(520.0f), (vfloat)(60.0f)), inside(shape, params->origin.w));
+        hu = v_select(near, paint(hu, fma(swirl, (vfloat)(520.0f), (vfloat)(60.0f)), inside(shape, params->origin.w)), hu);
     }
     store_made(params, &m, hu, 1.0f, slice, out);
 }

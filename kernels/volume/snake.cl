@@ -14,21 +14,27 @@ __kernel void snake(__global short* out, __constant PhantomParams* params, __glo
 
     vfloat hu = (vfloat)(-1000.0f);
     vfloat egg = body_distance(CLVR_SNAKE_EGG, params->far[CLVR_SNAKE_EGG], parts, start, list, p);
-    if (v_any(v_lt(fabs(egg), (vfloat)(2.0f)))) {
+    vmask near = v_lt(fabs(egg), (vfloat)(2.0f));
+    if (v_any(near)) {
         // The rim of the opening is torn; the shell has low grains outside.
         vfloat rim = fma(noise(p, 6.0f, key), (vfloat)(3.0f), p.z - 3.0f);
         vfloat grains = fma(noise(p, 0.9f, key + 1), (vfloat)(0.12f), egg);
-        hu = paint_hu(hu, 240.0f, inside(v_max(v_max(grains, -0.55f - egg), rim), per_mm));
+        hu = v_select(near, paint_hu(hu, 240.0f, inside(v_max(v_max(grains, -0.55f - egg), rim), per_mm)), hu);
     }
     vfloat flesh = body_distance(CLVR_SNAKE_FLESH, params->far[CLVR_SNAKE_FLESH], parts, start, list, p);
-    if (v_any(v_lt(flesh, (vfloat)(1.0f)))) {
+    near = v_lt(flesh, (vfloat)(1.0f));
+    if (v_any(near)) {
         vfloat scales = fma(noise(p, 0.55f, key + 2), (vfloat)(0.07f), flesh);
         vfloat muscle = fma(noise(p, 1.7f, key + 3), (vfloat)(30.0f), (vfloat)(45.0f));
         vfloat gut = body_distance(CLVR_SNAKE_GUT, params->far[CLVR_SNAKE_GUT], parts, start, list, p);
         muscle = paint_hu(muscle, -60.0f, inside(gut, per_mm));
-        hu = paint(hu, muscle, inside(scales, per_mm));
+        hu = v_select(near, paint(hu, muscle, inside(scales, per_mm)), hu);
     }
     vfloat bone = body_distance(CLVR_SNAKE_BONE, params->far[CLVR_SNAKE_BONE], parts, start, list, p);
-    if (v_any(v_lt(bone, (vfloat)(0.5f)))) hu = paint(hu, fma(noise(p, 0.7f, key + 4), (vfloat)(250.0f), (vfloat)(1150.0f)), inside(bone, per_mm));
+    near = v_lt(bone, (vfloat)(0.8f));
+    if (v_any(near)) {
+        vfloat mineral = fma(noise(p, 0.7f, key + 4), (vfloat)(250.0f), (vfloat)(1150.0f));
+        hu = v_select(near, paint(hu, mineral, inside(bone, per_mm)), hu);
+    }
     store_made(params, &m, hu, 1.0f, slice, out);
 }

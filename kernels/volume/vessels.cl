@@ -12,10 +12,11 @@ __kernel void vessels(__global short* out, __constant PhantomParams* params, __g
 
     vfloat hu = (vfloat)(-1000.0f);
     vfloat lobe = body_distance(CLVR_VESSEL_LOBE, params->far[CLVR_VESSEL_LOBE], parts, start, list, m.p);
-    if (v_any(v_lt(lobe, (vfloat)(3.0f)))) {
+    vmask near = v_lt(lobe, (vfloat)(6.0f));
+    if (v_any(near)) {
         vfloat outside = fma(noise(m.p, 14.0f, key), (vfloat)(2.0f), lobe);
         vfloat tissue = fma(noise(m.p, 3.0f, key + 1), (vfloat)(25.0f), fma(noise(m.p, 20.0f, key + 2), (vfloat)(30.0f), (vfloat)(-850.0f)));
-        hu = paint(hu, tissue, inside(outside, 0.3f * per_mm));
+        hu = v_select(near, paint(hu, tissue, inside(outside, 0.3f * per_mm)), hu);
     }
     vfloat tree = body_distance(CLVR_VESSEL_TREE, params->far[CLVR_VESSEL_TREE], parts, start, list, m.p);
     vfloat wall = paint_hu((vfloat)(380.0f), 120.0f, inside(-tree - 0.35f, per_mm));

@@ -76,19 +76,38 @@ TEST_F(Learning, PairsAreIndependentAndResumable) {
     EXPECT_NE(read_exr(path("test/view_0001_noisy_0.exr")).at("albedo.R"), noisy.at("albedo.R")); // other views
 }
 
+TEST_F(Learning, DatasetsAreListedAndMade) {
+    const Outcome list = run({"dataset", "list", "--json"});
+    ASSERT_EQ(list.exit_code, 0) << list.err;
+    EXPECT_GE(nlohmann::json::parse(list.out).at("datasets").size(), 9u);
+    EXPECT_THAT(run({"dataset", "info", "king_snake"}).out, AllOf(HasSubstr("1024 x 1024 x 795"), HasSubstr("dataset make snake")));
+    const Outcome made = run({"dataset", "make", "foam", "--dims", "20x24x28", "--type", "u16", "-o", path("foam.nii.gz")});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_THAT(run({"info", path("foam.nii.gz")}).out, HasSubstr("20 x 24 x 28 u16"));
+    for (const std::vector<std::string>& wrong : {std::vector<std::string>{"dataset"},
+                                                  {"dataset", "info", "unicorn"},
+                                                  {"dataset", "fetch", "bonsai"},
+                                                  {"dataset", "make", "foam"},
+                                                  {"dataset", "make", "foam", "-o", path("x.nii"), "--dims", "2x2"},
+                                                  {"dataset", "make", "unicorn", "-o", path("x.nii")},
+                                                  {"dataset", "make", "foam", "-o", path("x.nii"), "--type", "f64"}})
+        EXPECT_EQ(run(wrong).exit_code, 2) << wrong.back();
+}
+
 TEST_F(Learning, ViewsTakeTransferFunctionsAndZoomsInTurn) {
-    const Outcome o = pairs("v", {"--vary-tf", "ct-bone", "--vary-tf", "mr", "--zoom-range", "0.8,1.6"});
+    const Outcome o = pairs("v", {"--vary-tf", "ct-bone", "--vary-tf", "mr", "--zoom-range", "0.8,1.6", "--noisy-spp", "1,3"});
     ASSERT_EQ(o.exit_code, 0) << o.err;
     const auto plan = nlohmann::json::parse(text(path("v/pairs.json")));
-    EXPECT_EQ(plan["scenes"].size(), 2u);
-    EXPECT_NE(plan["scenes"][0]["transfer_function"], plan["scenes"][1]["transfer_function"]);
+    ASSERT_EQ(plan.at("scenes").size(), 2u);
+    EXPECT_NE(plan.at("scenes")[0].at("transfer"), plan.at("scenes")[1].at("transfer"));
     double low = 2, high = 0;
-    for (const auto& view : plan["views"]) {
-        low = std::min(low, view["zoom"].get<double>());
-        high = std::max(high, view["zoom"].get<double>());
+    for (const auto& view : plan.at("views")) {
+        low = std::min(low, view.at("zoom").get<double>());
+        high = std::max(high, view.at("zoom").get<double>());
     }
     EXPECT_TRUE(low >= 0.8 && high <= 1.6 && low < high);
     EXPECT_NE(read_exr(path("v/view_0000_noisy_0.exr")).at("albedo.R"), read_exr(path("v/view_0001_noisy_0.exr")).at("albedo.R"));
+    EXPECT_EQ(read_exr(path("v/view_0002_noisy_1.exr")).attributes.at("clvr.spp"), "3");
     ASSERT_EQ(run({"pairs", path("v/pairs.json"), "-o", path("w")}).exit_code, 0);
     for (const char* name : {"view_0000_noisy_0.exr", "view_0001_noisy_0.exr"})
         EXPECT_EQ(hash(std::string("v/") + name), hash(std::string("w/") + name));

@@ -109,6 +109,43 @@ TEST(Denoiser, RepairsWhatIsNotFinite) {
     for (const float v : done.at("R")) ASSERT_TRUE(std::isfinite(v));
 }
 
+/// Against the formula in double precision, across a seam of bands.
+TEST(Denoiser, GoesBackToTheInputWhereThatHasConverged) {
+    const int width = 23, height = 270;
+    const Frame plain = noisy_frame(width, height);
+    Device device = test_device();
+    Denoiser denoiser(device, test_model());
+    const Frame out = denoiser.denoise(plain);
+    for (const float level : {0.0f, 0.05f, 1e6f}) {
+        Frame frame = plain;
+        for (const char* c : {"R", "G", "B"}) {
+            std::vector<float>& v = frame.channel(std::string("variance.") + c);
+            for (std::size_t i = 0; i < v.size(); ++i) v[i] = level * static_cast<float>(i % 5);
+        }
+        const Frame done = denoiser.denoise(frame);
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                double squares = 0, variances = 0;
+                for (int j = std::max(0, y - 3); j <= std::min(height - 1, y + 3); ++j)
+                    for (int i = std::max(0, x - 3); i <= std::min(width - 1, x + 3); ++i) {
+                        const std::size_t at = static_cast<std::size_t>(j) * width + i;
+                        squares += std::pow(static_cast<double>(frame.at("G")[at]) - out.at("G")[at], 2);
+                        variances += frame.at("variance.G")[at];
+                    }
+                const std::size_t at = static_cast<std::size_t>(y) * width + x;
+                const double bias = std::max(0.0, squares - variances), total = bias + variances;
+                const double share = total > 0 ? bias / total : 0, d = static_cast<double>(frame.at("G")[at]) - out.at("G")[at];
+                ASSERT_NEAR(done.at("G")[at], out.at("G")[at] + d * share, 1e-5) << x << " " << y << " " << level;
+                if (level == 0) {
+                    ASSERT_NEAR(done.at("G")[at], frame.at("G")[at], 1e-6);
+                } // no noise: the input
+                if (level > 1) {
+                    ASSERT_EQ(done.at("G")[at], out.at("G")[at]);
+                } // nothing but noise: the network
+            }
+    }
+}
+
 TEST(Denoiser, NeverSeesTheBackground) {
     Frame frame = noisy_frame(60, 44), laid = frame;
     for (const char* c : {"R", "G", "B"}) {

@@ -47,6 +47,52 @@ TEST(Phantom, HasTheSameBitsAtEveryPacketWidthAndGroup) {
     }
 }
 
+TEST(Phantom, OthersHaveTheSameBitsAtEveryPacketWidth) {
+    const std::pair<const char*, const char*> hashes[] = {{"beetle", "f357872bf9b74e1bd908695903e3743cad9acf7e6d2c6ad56650e44ace9c6ce0"},
+                                                          {"snake", "6fea4253de4184a90728dac00433c485ff23647ed38c6399c099c52934b343db"},
+                                                          {"vessels", "76234e9d50dbbadd4c29b2b4c5c8627c2c071e400380c969f6880266b75782af"},
+                                                          {"foam", "47504f2323a2dd1cf1b0096dca31574574dd64325f5a5b3e9ee50a0e3ff1bf07"}};
+    Device device = open_device();
+    for (const auto& [name, hash] : hashes)
+        for (const int packet : {16, 4, 1}) {
+            device.set_tunable("packet", packet);
+            const Voxels v = make_phantom(device, name, {Int3{61, 45, 37}});
+            EXPECT_EQ(hash_of(v), hash) << name << " in packets of " << packet;
+        }
+}
+
+TEST(Phantom, OthersHaveTheirPartsWhereTheyBelong) {
+    Device device = open_device();
+    /// Share of the voxels above some Hounsfield units.
+    const auto above = [](const Voxels& v, double hu) {
+        std::size_t n = 0;
+        with_voxel_type(v.type, [&](auto sample) {
+            using T = decltype(sample);
+            for (std::size_t i = 0; i < v.count(); ++i) n += v.slope * static_cast<double>(v.data<T>()[i]) + v.intercept > hu;
+        });
+        return static_cast<double>(n) / static_cast<double>(v.count());
+    };
+    const Voxels beetle = make_phantom(device, "beetle", {Int3{208, 208, 124}});
+    EXPECT_EQ(beetle.type, VoxelType::u16);
+    EXPECT_GT(greatest(beetle, {0.6, 15, 5}, {0.6, 15, 12}), 0);  // wing case above,
+    EXPECT_LT(greatest(beetle, {3, 15, 0}, {3, 15, 4}), -300);    // little under it
+    EXPECT_GT(greatest(beetle, {33, 9, -13}, {31, 5, -6}), -300); // a shin, on both sides
+    EXPECT_GT(greatest(beetle, {-33, 9, -13}, {-31, 5, -6}), -300);
+    EXPECT_NEAR(hounsfield(beetle, {0, 35, 20}), -1000, 15);
+    EXPECT_NEAR(above(beetle, -200), 0.015, 0.012);
+    const Voxels snake = make_phantom(device, "snake", {Int3{256, 256, 200}});
+    EXPECT_EQ(snake.type, VoxelType::u8);
+    EXPECT_GT(greatest(snake, {0, 0, -19}, {0, 0, -16}), 100); // shell below, none above
+    EXPECT_LT(greatest(snake, {0, 0, 15}, {0, 0, 19}), -900);
+    EXPECT_NEAR(above(snake, 500), 0.002, 0.0015); // spine, ribs, skull
+    const Voxels vessels = make_phantom(device, "vessels", {Int3{96, 76, 96}});
+    EXPECT_NEAR(hounsfield(vessels, {6, 0, -42}), 380, 40); // the first stem
+    EXPECT_NEAR(above(vessels, 200), 0.02, 0.015);
+    EXPECT_NEAR(above(make_phantom(device, "foam", {Int3{64, 64, 64}}), -500), 0.15, 0.12);
+    EXPECT_NE(hash_of(make_phantom(device, "vessels", {Int3{48, 38, 48}, {}, 1})),
+              hash_of(make_phantom(device, "vessels", {Int3{48, 38, 48}, {}, 2})));
+}
+
 TEST(Phantom, HasItsTissuesWhereTheyBelong) {
     Device device = open_device();
     const Voxels v = make_phantom(device, "head-closed", {half_dims});

@@ -24,6 +24,7 @@ only host/denoise runtime/ host/frame/ host/denoise/ kernels/shared/
 only host/io runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/io/ kernels/shared/
 only host/train runtime/ host/frame/ host/denoise/ host/io/ host/train/ kernels/shared/
 only host/eval runtime/ host/frame/ host/denoise/ host/io/ host/train/ host/eval/
+only host/dataset runtime/ host/dataset/
 only host/cli runtime/ host/ kernels/shared/
 only kernels/shared shared/
 only kernels/lib shared/ lib/
@@ -35,6 +36,7 @@ only kernels/probe shared/ lib/ trust_operations.h
 
 nowhere_but 'runtime/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'
 nowhere_but 'host/io/[a-z_]*\.cpp' '#\s*include\s*[<"](itk|ImfF?|png\.h|stb_|zlib\.h)'
+nowhere_but 'host/dataset/download\.cpp' '#\s*include\s*<curl'
 nowhere_but 'host/train/matrix_layers\.cpp' '#\s*include\s*<clblast'
 complain "the runtime knows no volume, no image, no network" "$(grep -rniE 'volume|brick|voxel|guide|denoise' runtime || true)"
 exit $status

@@ -1,0 +1,149 @@
+// clvr dataset: volumes that others publish, and volumes that clvr computes.
+#include "host/cli/commands.hpp"
+#include "host/cli/device_options.hpp"
+#include "host/cli/interrupt.hpp"
+#include "host/cli/progress_bar.hpp"
+#include "host/dataset/download.hpp"
+#include "host/dataset/manifest.hpp"
+#include "host/io/volume_file.hpp"
+#include "host/volume/phantom.hpp"
+#include "runtime/error.hpp"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+namespace clvr {
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+struct Options {
+    std::string name, folder = ".", output, dims, type;
+    std::uint64_t seed = 0;
+    bool json = false;
+    DeviceOptions device;
+};
+
+ordered_json to_json(const Dataset& d) {
+    ordered_json j{{"name", d.name}, {"title", d.title}, {"source", d.source}, {"licence", d.licence}, {"citation", d.citation}};
+    if (!d.url.empty()) j["url"] = d.url, j["bytes"] = d.bytes;
+    if (!d.sha512.empty()) j["sha512"] = d.sha512;
+    j["dims"] = d.dims, j["type"] = d.type, j["spacing"] = d.spacing;
+    if (!d.transfer_function.empty()) j["transfer_function"] = d.transfer_function;
+    j["view"] = {{"azimuth", d.azimuth}, {"elevation", d.elevation}, {"zoom", d.zoom}};
+    if (!d.computed.empty()) j["computed"] = d.computed;
+    return j;
+}
+
+void list(const Options& o) {
+    if (o.json) {
+        ordered_json all = ordered_json::array();
+        for (const Dataset& d : datasets()) all.push_back(to_json(d));
+        fmt::print("{}\n", ordered_json{{"datasets", all}, {"computed", phantom_names()}}.dump(1));
+        return;
+    }
+    for (const Dataset& d : datasets())
+        fmt::print("{:<12} {:>15} {:<4} {:<6} {}\n", d.name, fmt::format("{}", fmt::join(d.dims, "x")), d.type,
+                   d.url.empty() ? "" : "fetch", d.title);
+    fmt::print("computed by `clvr dataset make`, or as demo:NAME: {}\n", fmt::join(phantom_names(), ", "));
+}
+
+void info(const Options& o) {
+    const Dataset& d = dataset_named(o.name);
+    if (o.json) {
+        fmt::print("{}\n", to_json(d).dump(1));
+        return;
+    }
+    fmt::print("{}: {}\n", d.name, d.title);
+    fmt::print("  voxels    {} {}, spacing {} mm\n", fmt::join(d.dims, " x "), d.type, fmt::join(d.spacing, " x "));
+    fmt::print("  source    {}\n  licence   {}\n  citation  {}\n", d.source, d.licence, d.citation);
+    if (!d.url.empty()) fmt::print("  url       {}, {} bytes\n", d.url, d.bytes);
+    if (!d.sha512.empty()) fmt::print("  sha512    {}\n", d.sha512);
+    fmt::print("  view      --azimuth {} --elevation {} --zoom {}{}\n", d.azimuth, d.elevation, d.zoom,
+               d.transfer_function.empty() ? "" : " --tf " + d.transfer_function);
+    if (!d.computed.empty()) fmt::print("  stand-in  clvr dataset make {}\n", d.computed);
+}
+
+void fetch(const Options& o) {
+    const Dataset& d = dataset_named(o.name);
+    if (d.url.empty())
+        throw Error(ErrorKind::usage,
+                    fmt::format("is not published as a single file; its source: {}{}", d.source,
+                                d.computed.empty() ? "" : fmt::format(". `clvr dataset make {}` computes a volume like it", d.computed)),
+                    d.name);
+    std::error_code failed;
+    fs::create_directories(o.folder, failed);
+    if (failed) throw Error(ErrorKind::input, fmt::format("cannot be made: {}", failed.message()), o.folder);
+    const std::string path = (fs::path(o.folder) / d.file_name()).string();
+    {
+        ProgressBar bar("fetching " + d.name, false);
+        download(
+            {d.url, path, d.bytes, d.sha512},
+            [&](std::uint64_t there) {
+                bar.update(static_cast<double>(there) / static_cast<double>(d.bytes),
+                           fmt::format("{} of {} MB", there >> 20, d.bytes >> 20));
+            },
+            &catch_interrupts());
+    }
+    spdlog::info("{}: {} (licence: {})", path, d.title, d.licence);
+}
+
+void make(const Options& o) {
+    if (o.output.empty()) throw Error(ErrorKind::usage, "no output given: add -o volume.nii.gz (or .nii)", "clvr dataset make");
+    PhantomOptions options;
+    options.seed = o.seed;
+    if (!o.dims.empty()) {
+        Int3 dims{};
+        char end = 0;
+        if (std::sscanf(o.dims.c_str(), "%dx%dx%d%c", &dims[0], &dims[1], &dims[2], &end) != 3)
+            throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected for instance 256x256x200", o.dims), "--dims");
+        options.dims = dims;
+    }
+    if (!o.type.empty()) {
+        for (const VoxelType t : {VoxelType::u8, VoxelType::i8, VoxelType::u16, VoxelType::i16, VoxelType::f32})
+            if (o.type == voxel_type_name(t)) options.type = t;
+        if (!options.type) throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected u8, i8, u16, i16 or f32", o.type), "--type");
+    }
+    check_nifti_path(o.output);
+    Device device = open_device(o.device);
+    write_nifti(make_phantom(device, o.name, options), o.output);
+    print_profiles(o.device, {device});
+}
+
+} // namespace
+
+void add_dataset_command(CLI::App& app) {
+    CLI::App* c = app.add_subcommand("dataset", "Volumes that others publish, and volumes that clvr computes");
+    c->require_subcommand(1);
+    auto o = std::make_shared<Options>();
+
+    CLI::App* l = c->add_subcommand("list", "What there is");
+    l->add_flag("--json", o->json, "Write JSON");
+    l->callback([o] { list(*o); });
+
+    CLI::App* i = c->add_subcommand("info", "Size, source, licence, citation of a published volume");
+    i->add_option("NAME", o->name, "As listed")->required();
+    i->add_flag("--json", o->json, "Write JSON");
+    i->callback([o] { info(*o); });
+
+    CLI::App* f = c->add_subcommand("fetch", "Download a published volume; goes on where it was interrupted, checks size and checksum");
+    f->add_option("NAME", o->name, "As listed")->required();
+    f->add_option("--dir", o->folder, "Folder [.]");
+    f->callback([o] { fetch(*o); });
+
+    CLI::App* m = c->add_subcommand("make", "Compute a volume: the same bits on every device");
+    m->add_option("NAME", o->name, fmt::format("{}", fmt::join(phantom_names(), ", ")))->required();
+    m->add_option("-o,--output", o->output, "File to write (.nii.gz or .nii)")->type_name("FILE");
+    m->add_option("--dims", o->dims, "Voxels [the volume's own]")->type_name("XxYxZ");
+    m->add_option("--type", o->type, "u8, i8, u16, i16 or f32 [the volume's own]");
+    m->add_option("--seed", o->seed, "Of growth, texture and noise [0]");
+    add_device_options(*m, o->device);
+    m->callback([o] { make(*o); });
+}
+
+} // namespace clvr

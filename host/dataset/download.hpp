@@ -1,0 +1,25 @@
+// Files from the web, whole or not at all.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace clvr {
+
+struct Download {
+    std::string url;         ///< http or https
+    std::string path;        ///< where the whole file is to lie
+    std::uint64_t bytes = 0; ///< its size
+    std::string sha512;      ///< hexadecimal; empty: only the size is checked
+    int attempts = 5;        ///< for what may pass: connections that break, servers that are busy
+    double pause = 1;        ///< before the second attempt [s], twice as long before each further one
+};
+
+/// Fetches the file with libcurl, beside its place (path + ".part"), goes on with what an earlier call left there, checks size and checksum
+/// and only then gives it its name. Follows redirections, honours the proxy settings of the environment. Nothing is asked when the file
+/// lies there already and is right. `progress` gets the bytes that are there. Throws Error{input}: what the server answered, a wrong size
+/// or checksum (the damaged part is removed), an existing file of other content; Error{interrupted}.
+void download(const Download& what, const std::function<void(std::uint64_t)>& progress = {}, const std::atomic<bool>* cancelled = nullptr);
+
+} // namespace clvr
