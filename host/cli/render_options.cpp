@@ -121,7 +121,8 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--background", o.background, "transparent, environment or #rrggbb [transparent]")->group("Picture");
     c.add_option("--feature-samples", o.feature_samples, "Rays per pixel of the noise-free features, 1 or 4 [4]")->group("Picture");
 
-    c.add_option("--tf", o.transfer, "Transfer function: a preset's name, or a JSON file (clvr's or ParaView's) [from the histogram]")
+    c.add_option("--tf", o.transfer,
+                 "Transfer function: a preset's name, a JSON file (clvr's or ParaView's), or auto: from the histogram [auto]")
         ->type_name("NAME|FILE")
         ->group("Volume");
     c.add_option("--extinction", o.extinction, "Extinction at opacity 1 [1/mm] [512 / diagonal]")->group("Volume");
@@ -203,7 +204,10 @@ Scene scene_of(const RenderOptions& o) {
     if (o.shading)
         s.shading = choice<Shading>("--shading", *o.shading,
                                     {{"auto", Shading::automatic}, {"phase", Shading::phase}, {"gradient", Shading::gradient}});
-    if (o.transfer) s.transfer = transfer_of(*o.transfer);
+    if (o.transfer == "auto")
+        s.transfer.reset();
+    else if (o.transfer)
+        s.transfer = transfer_of(*o.transfer);
     if (o.environment) set_environment(s, *o.environment);
     if (o.background) set_background(s, *o.background);
     set(s.light.image_rotation, o.environment_rotation), set(s.light.key, o.key), set(s.light.key_azimuth, o.key_azimuth);

@@ -26,10 +26,13 @@ std::uint32_t wave_paths(const Device& device, std::uint32_t pixels) {
 PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light, std::uint32_t pixels)
     : device_(device), volume_(volume), light_(light), width_(packet_width(device)) {
     capacity_ = wave_paths(device, pixels);
+    run_ = std::max(1, device.tunable("packet_run", width_ == 1 ? 1 : 16));
     per_packet_ = static_cast<std::size_t>(device.tunable("packet_group", width_ == 1 ? 64 : 1));
     per_path_ = static_cast<std::size_t>(device.tunable("shade_group", 64));
     Defines packet = volume.defines(), scalar = volume.defines();
     packet["CLVR_WIDTH"] = std::to_string(width_);
+    packet["CLVR_RUN"] = std::to_string(run_);
+    packet["CLVR_REFILL"] = std::to_string(std::clamp(device.tunable("packet_refill", width_ / 4), 1, width_));
     scalar["CLVR_WIDTH"] = "1";
     camera_rays_ = device_.kernel("render/camera_rays", {{"CLVR_WIDTH", "1"}});
     free_flight_ = device_.kernel("render/free_flight", packet);
@@ -129,6 +132,9 @@ void PathTracer::gather_light(std::uint32_t lit, std::uint32_t bounce) {
 
 BufferList PathTracer::paths() const { return {&path_id_, &origin_, &heading_, &weight_, &radiance_, &shadow_heading_, &shadow_light_}; }
 
-Range PathTracer::packets(std::uint32_t count) const { return {(count + width_ - 1) / width_}; }
+Range PathTracer::packets(std::uint32_t count) const {
+    const std::size_t paths = static_cast<std::size_t>(width_) * run_;
+    return {(count + paths - 1) / paths};
+}
 
 } // namespace clvr

@@ -2,31 +2,37 @@
 #include "shared/render_params.h"
 #include "lib/packet.clh"
 
+// Where the flights ended, of the lanes that fly no more.
+static inline void store_ends(Flights* f, vmask collided, __global float4* origin) {
+    Vec3 p = along(f->walk.ray.o, f->walk.ray.d, f->walk.t); // not stop_position: in the half voxel at the volume's border that is another point
+    float x[CLVR_WIDTH], y[CLVR_WIDTH], z[CLVR_WIDTH];
+    int to[CLVR_WIDTH], hit[CLVR_WIDTH], ended[CLVR_WIDTH];
+    v_store(p.x, x), v_store(p.y, y), v_store(p.z, z), v_store(f->path, to), v_store(collided, hit), v_store(f->held & v_not(f->flying), ended);
+    for (int k = 0; k < CLVR_WIDTH; ++k)
+        if (ended[k]) origin[to[k]] = (float4)(x[k], y[k], z[k], hit[k] ? 1.0f : -1.0f);
+    f->held &= f->flying;
+}
+
 __kernel void free_flight(VOLUME_ARGS, __constant RenderParams* render, PATH_ARGS, __global const uint* active, uint count, uint bounce) {
     Volume vol = VOLUME_HERE;
-    if (get_global_id(0) * CLVR_WIDTH >= count) return;
-    vmask lanes;
-    vint path = packet_paths(active, count, &lanes);
-    vuint pixel = v_uint_of_int(v_gather_int((__global const uint*)path_id, path * 2)), sample = v_uint_of_int(v_gather_int((__global const uint*)path_id, path * 2 + 1));
-    Walk w;
-    vmask flying = begin_walk(&vol, &w, packet_load3(origin, path), packet_load3(heading, path), lanes);
+    Flights f;
+    begin_flights(&f, count);
     vmask collided = (vmask)(0);
-    RandomBlock block;
-    for (uint n = 0; v_any(flying); ++n) {
+    for (uint n = 0; f.next < f.end || v_any(f.flying); ++n) {
+        if (wants_paths(&f, n)) {
+            if (v_any(f.held)) store_ends(&f, collided, origin);
+            collided &= v_not(take_paths(&vol, &f, n, active, path_id, origin, heading));
+        }
+        if (!v_any(f.flying)) continue;
         vfloat depth, choice;
-        collision_numbers(&block, n, pixel, sample, bounce * 4 + CLVR_STREAM_FLIGHT, render, &depth, &choice);
-        flying = walk_depth(&vol, &w, depth, flying);
-        if (!v_any(flying)) break;
+        collision_numbers(&f, n, bounce * 4 + CLVR_STREAM_FLIGHT, render, &depth, &choice);
+        f.flying = walk_depth(&vol, &f.walk, depth, f.flying);
+        if (!v_any(f.flying)) continue;
         Int3 i;
-        Vec3 p = stop_position(vol.p, &w, &i);
-        vmask real = v_lt(choice * w.majorant, opacity_of(&vol, stored_value_in(&vol, p, i))) & flying;
+        Vec3 p = stop_position(vol.p, &f.walk, &i);
+        vmask real = v_lt(choice * f.walk.majorant, opacity_of(&vol, stored_value_in(&vol, p, i))) & f.flying;
         collided |= real;
-        flying &= v_not(real);
+        f.flying &= v_not(real);
     }
-    Vec3 p = along(w.ray.o, w.ray.d, w.t); // not stop_position: in the half voxel at the volume's border that is another point
-    float x[CLVR_WIDTH], y[CLVR_WIDTH], z[CLVR_WIDTH];
-    int to[CLVR_WIDTH], hit[CLVR_WIDTH], on[CLVR_WIDTH];
-    v_store(p.x, x), v_store(p.y, y), v_store(p.z, z), v_store(path, to), v_store(collided, hit), v_store(lanes, on);
-    for (int k = 0; k < CLVR_WIDTH; ++k)
-        if (on[k]) origin[to[k]] = (float4)(x[k], y[k], z[k], hit[k] ? 1.0f : -1.0f);
+    if (v_any(f.held)) store_ends(&f, collided, origin);
 }
