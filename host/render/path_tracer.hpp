@@ -48,7 +48,7 @@ private:
     const DeviceVolume& volume_;
     const LightTables& light_;
     std::uint32_t capacity_;
-    int width_, run_; // lanes of a packet; packets' worth of paths that a work-item flies
+    int width_, run_;                   // lanes of a packet; packets' worth of paths that a work-item flies
     std::size_t per_packet_, per_path_; // local sizes wanted
     Kernel camera_rays_, free_flight_, shade_, compact_, transmittance_, accumulate_;
     Buffer lobe_;
