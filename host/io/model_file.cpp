@@ -58,6 +58,7 @@ void read_settings(const std::string& text, const std::string& where, Model& m) 
     fields.get("albedo_floor", floor);
     m.albedo_floor = static_cast<float>(floor);
     fields.get("opacity_weight", m.opacity_weight);
+    fields.get("demodulation", m.demodulation);
     fields.done();
 }
 
@@ -112,11 +113,12 @@ TensorFile tensors_of(const Model& m) {
                     {"conv2.bias", float_tensor({m.outputs()}, m.conv2_bias)}};
     nlohmann::ordered_json levels = nlohmann::ordered_json::array();
     for (const auto& level : m.levels) levels.push_back({level.pixels, level.codes});
-    const nlohmann::ordered_json settings{{"channels", m.channels},
-                                          {"levels", levels},
-                                          {"exposure", m.exposure},
-                                          {"albedo_floor", static_cast<double>(m.albedo_floor)},
-                                          {"opacity_weight", m.opacity_weight}};
+    nlohmann::ordered_json settings{{"channels", m.channels},
+                                    {"levels", levels},
+                                    {"exposure", m.exposure},
+                                    {"albedo_floor", static_cast<double>(m.albedo_floor)},
+                                    {"opacity_weight", m.opacity_weight}};
+    if (!m.demodulation) settings["demodulation"] = false; // absent: on, as in files of before the switch
     file.metadata = m.notes;
     file.metadata[format_key] = format_tag;
     file.metadata[settings_key] = settings.dump();
