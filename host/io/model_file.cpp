@@ -104,13 +104,7 @@ Model model_of(const TensorFile& file, const std::string& where) {
     return m;
 }
 
-TensorFile tensors_of(const Model& m) {
-    TensorFile file;
-    const std::int64_t in = static_cast<std::int64_t>(m.channels.size()), k = m.kernel;
-    file.tensors = {{"conv1.weight", float_tensor({m.hidden, in, k, k}, m.conv1_weight)},
-                    {"conv1.bias", float_tensor({m.hidden}, m.conv1_bias)},
-                    {"conv2.weight", float_tensor({m.outputs(), m.hidden, k, k}, m.conv2_weight)},
-                    {"conv2.bias", float_tensor({m.outputs()}, m.conv2_bias)}};
+std::string model_settings_json(const Model& m) {
     nlohmann::ordered_json levels = nlohmann::ordered_json::array();
     for (const auto& level : m.levels) levels.push_back({level.pixels, level.codes});
     nlohmann::ordered_json settings{{"channels", m.channels},
@@ -119,9 +113,19 @@ TensorFile tensors_of(const Model& m) {
                                     {"albedo_floor", static_cast<double>(m.albedo_floor)},
                                     {"opacity_weight", m.opacity_weight}};
     if (!m.demodulation) settings["demodulation"] = false; // absent: on, as in files of before the switch
+    return settings.dump();
+}
+
+TensorFile tensors_of(const Model& m) {
+    TensorFile file;
+    const std::int64_t in = static_cast<std::int64_t>(m.channels.size()), k = m.kernel;
+    file.tensors = {{"conv1.weight", float_tensor({m.hidden, in, k, k}, m.conv1_weight)},
+                    {"conv1.bias", float_tensor({m.hidden}, m.conv1_bias)},
+                    {"conv2.weight", float_tensor({m.outputs(), m.hidden, k, k}, m.conv2_weight)},
+                    {"conv2.bias", float_tensor({m.outputs()}, m.conv2_bias)}};
     file.metadata = m.notes;
     file.metadata[format_key] = format_tag;
-    file.metadata[settings_key] = settings.dump();
+    file.metadata[settings_key] = model_settings_json(m);
     return file;
 }
 

@@ -186,6 +186,7 @@ bool Trainer::run(const std::atomic<bool>& cancelled, const std::function<void(c
     const std::int64_t per_epoch = s.steps_per_epoch(), total = s.total_steps();
     std::int64_t at = s.step.state().step, collected = at;
     TrainerProgress p;
+    if (at >= total) s.save(); // finished before: its files are there again, even those that someone removed
     for (int epoch = static_cast<int>(at / per_epoch); at < total; ++epoch) {
         const std::vector<Crop> crops = epoch_crops(c.seed, epoch, s.sizes, s.frames, c.patches_per_image, c.step.patch, c.augment);
         const std::int64_t count = std::min(per_epoch, total - epoch * per_epoch);
