@@ -3,6 +3,7 @@
 #include "host/cli/device_options.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/progress_bar.hpp"
+#include "host/cli/volume_options.hpp"
 #include "host/dataset/download.hpp"
 #include "host/dataset/manifest.hpp"
 #include "host/io/volume_file.hpp"
@@ -97,18 +98,14 @@ void make(const Options& o) {
     if (o.output.empty()) throw Error(ErrorKind::usage, "no output given: add -o volume.nii.gz (or .nii)", "clvr dataset make");
     PhantomOptions options;
     options.seed = o.seed;
-    if (!o.dims.empty()) {
-        Int3 dims{};
-        char end = 0;
-        if (std::sscanf(o.dims.c_str(), "%dx%dx%d%c", &dims[0], &dims[1], &dims[2], &end) != 3)
-            throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected for instance 256x256x200", o.dims), "--dims");
-        options.dims = dims;
+    options.cancelled = &catch_interrupts();
+    if (const Dataset* published = published_as(o.name)) { // as large as what it stands in for
+        options.dims = published->dims;
+        options.type = voxel_type_named(published->type);
     }
-    if (!o.type.empty()) {
-        for (const VoxelType t : {VoxelType::u8, VoxelType::i8, VoxelType::u16, VoxelType::i16, VoxelType::f32})
-            if (o.type == voxel_type_name(t)) options.type = t;
-        if (!options.type) throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected u8, i8, u16, i16 or f32", o.type), "--type");
-    }
+    if (!o.dims.empty()) options.dims = parse_dims(o.dims);
+    if (!o.type.empty() && !(options.type = voxel_type_named(o.type)))
+        throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected u8, i8, u16, i16 or f32", o.type), "--type");
     check_nifti_path(o.output);
     Device device = open_device(o.device);
     write_nifti(make_phantom(device, o.name, options), o.output);
@@ -139,8 +136,8 @@ void add_dataset_command(CLI::App& app) {
     CLI::App* m = c->add_subcommand("make", "Compute a volume: the same bits on every device");
     m->add_option("NAME", o->name, fmt::format("{}", fmt::join(phantom_names(), ", ")))->required();
     m->add_option("-o,--output", o->output, "File to write (.nii.gz or .nii)")->type_name("FILE");
-    m->add_option("--dims", o->dims, "Voxels [the volume's own]")->type_name("XxYxZ");
-    m->add_option("--type", o->type, "u8, i8, u16, i16 or f32 [the volume's own]");
+    m->add_option("--dims", o->dims, "Voxels [those of the published volume that it is like, else its own]")->type_name("XxYxZ");
+    m->add_option("--type", o->type, "u8, i8, u16, i16 or f32 [as --dims]");
     m->add_option("--seed", o->seed, "Of growth, texture and noise [0]");
     add_device_options(*m, o->device);
     m->callback([o] { make(*o); });

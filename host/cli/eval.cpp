@@ -2,6 +2,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
 #include "host/cli/progress_bar.hpp"
+#include "host/eval/evaluation_json.hpp"
 #include "host/eval/report.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/frame_file.hpp"
@@ -9,11 +10,9 @@
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
 
-#include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 namespace clvr {
 
@@ -31,31 +30,11 @@ struct Options {
     DeviceOptions device;
 };
 
-ordered_json to_json(const Metrics& metrics) {
-    ordered_json all;
-    for (const auto& [name, value] : named(metrics)) {
-        if (std::isfinite(value))
-            all[name] = value;
-        else
-            all[name] = nullptr; // the PSNR of equal pictures
-    }
+ordered_json json_of(const Evaluation& e, const Options& o, const Baselines& b) {
+    ordered_json all{{"folder", o.folder}, {"models", o.models}};
+    all.update(to_json(b));
+    all.update(to_json(e));
     return all;
-}
-
-ordered_json to_json(const Evaluation& e, const Options& o, const Baselines& b) {
-    ordered_json mean, views = ordered_json::array();
-    for (const Score& s : e.scores) mean[s.name] = to_json(s.mean);
-    for (std::size_t v = 0; v < e.views.size(); ++v) {
-        ordered_json row{{"frame", fs::path(e.views[v]).filename().string()}};
-        for (const Score& s : e.scores) row[s.name] = to_json(s.views[v]);
-        views.push_back(row);
-    }
-    return {{"folder", o.folder},
-            {"models", o.models},
-            {"cross-bilateral", {{"spatial", b.cross_bilateral.spatial}, {"feature", b.cross_bilateral.feature}}},
-            {"wavelet", {{"colour", b.wavelet.colour}, {"feature", b.wavelet.feature}}},
-            {"mean", mean},
-            {"views", views}};
 }
 
 void print_table(const Evaluation& e) {
@@ -114,13 +93,12 @@ void eval(const Options& o) {
                                baselines.wavelet.feature, o.tune.empty() ? " (defaults)" : fmt::format(" (best of 3x3 on {})", o.tune)),
                    "PSNR and SSIM of clip(RGB, 0, 1)^(1/2.2) over black; RMSE, SMAPE and relMSE linear"};
         r.tonemap = o.tonemap;
-        r.frame = o.frame;
         r.trainings = trainings;
-        const std::string html = html_report(e, all, o.folder, r);
+        const std::string html = html_report({{"", o.frame, e, all}}, o.folder, r);
         write_atomically(o.report, html.data(), html.size());
     }
     if (o.json)
-        fmt::print("{}\n", to_json(e, o, baselines).dump(1));
+        fmt::print("{}\n", json_of(e, o, baselines).dump(1));
     else
         print_table(e);
     print_profiles(o.device, {device});

@@ -9,6 +9,7 @@
 #include "host/io/frame_file.hpp"
 #include "host/io/model_file.hpp"
 #include "host/io/scene_file.hpp"
+#include "host/io/scene_inputs.hpp"
 #include "host/render/params.hpp"
 #include "host/render/renderer.hpp"
 #include "runtime/embedded.hpp"
@@ -39,16 +40,6 @@ std::string kernels_sha256() {
     std::string all;
     for (const auto& [path, text] : embedded_kernels()) all += path + '\n' + text;
     return sha256_hex(all);
-}
-
-VolumeReadOptions reading_options(const Scene& s) {
-    return {s.frame, s.series, s.allow_gaps, s.raw.dims, s.raw.type, s.raw.spacing, s.raw.endian};
-}
-
-EnvironmentTables environment_of(const Scene& scene) {
-    if (scene.light.environment != Light::Environment::image) return {};
-    const RgbImage image = read_environment_image(scene.light.image);
-    return environment_tables(image.width, image.height, image.rgb, scene.light.level);
 }
 
 /// Everything that a frame's file says of its making.
@@ -109,7 +100,7 @@ void render(const RenderOptions& o) {
     const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr_path);
 
     const std::atomic<bool>& interrupted = catch_interrupts();
-    const EnvironmentTables environment = environment_of(scene);
+    const EnvironmentTables environment = read_environment(scene);
     std::vector<Device> devices = open_devices(o.devices);
     const PreparedVolume volume(open_volume(scene.volume, reading_options(scene), devices.front()));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {

@@ -16,11 +16,11 @@ namespace clvr {
 namespace {
 
 struct Options {
-    std::vector<std::string> folders, channels = reference_channels();
+    std::vector<std::string> folders, channels = default_settings().channels;
     std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant", convolution = "direct";
     TrainerConfig trainer;
     int hidden = 20, kernel = 5;
-    bool resume = false, no_augment = false, plain = false;
+    bool resume = false, no_augment = false, plain = false, no_demodulation = false;
     DeviceOptions device;
 };
 
@@ -36,15 +36,11 @@ Loss loss_of(const Options& o) {
 
 Model start_of(const Options& o) {
     if (!o.init.empty()) return read_model(o.init);
-    Model m;
+    Model m = o.plain ? Model() : default_settings();
     m.channels = o.channels;
     m.hidden = o.hidden;
     m.kernel = o.kernel;
-    if (!o.plain) {
-        m.exposure = true;
-        m.albedo_floor = 1.0f / 32;
-        m.opacity_weight = true;
-    }
+    if (o.no_demodulation) m.demodulation = false;
     if (m.hidden < 1 || m.hidden > 256) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 256", m.hidden), "--hidden");
     if (m.kernel < 1 || m.kernel > 15 || m.kernel % 2 == 0)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected an odd number, 1 to 15", m.kernel), "--kernel");
@@ -60,6 +56,7 @@ void check(const Options& o) {
     if (o.folders.empty()) throw Error(ErrorKind::usage, "no folder given: name one that `clvr pairs` made", "clvr train");
     if (o.output.empty()) throw Error(ErrorKind::usage, "no output given: add -o model.safetensors", "clvr train");
     range("--epochs", o.trainer.epochs, 1, 1e6);
+    range("--steps", static_cast<double>(o.trainer.steps), 0, 1e9);
     range("--batch", o.trainer.step.batch, 1, 65536);
     range("--patch", o.trainer.step.patch, 1, 4096);
     range("--patches-per-image", o.trainer.patches_per_image, 1, 1e6);
@@ -87,7 +84,8 @@ void train(Options o) {
     {
         ProgressBar bar("training", false);
         finished = trainer.run(interrupted, [&](const TrainerProgress& p) {
-            std::string note = fmt::format("epoch {}/{}, loss {:.5f}", p.epoch, o.trainer.epochs, p.loss);
+            const std::string of = o.trainer.steps > 0 ? "" : fmt::format("/{}", o.trainer.epochs);
+            std::string note = fmt::format("epoch {}{}, loss {:.5f}", p.epoch, of, p.loss);
             if (p.validation > 0) note += fmt::format(", {:.2f} dB", p.validation);
             bar.update(p.done, note);
         });
@@ -114,6 +112,7 @@ void add_train_command(CLI::App& app) {
     c->add_flag("--resume", o->resume, "Go on from the checkpoint: the same bits as without the interruption");
     c->add_option("--init", o->init, "Begin with this model's weights and settings")->type_name("MODEL");
     c->add_option("--epochs", t.epochs, "[200]")->group("Training");
+    c->add_option("--steps", t.steps, "End after so many steps; 0: with the last epoch [0]")->group("Training");
     c->add_option("--batch", t.step.batch, "Patches a step [128]")->group("Training");
     c->add_option("--patch", t.step.patch, "Width and height of a patch [256]")->group("Training");
     c->add_option("--patches-per-image", t.patches_per_image, "Patches of each view an epoch [50]")->group("Training");
@@ -134,6 +133,7 @@ void add_train_command(CLI::App& app) {
     c->add_option("--hidden", o->hidden, "Hidden channels [20]")->group("Model");
     c->add_option("--kernel", o->kernel, "Size of the convolutions [5]")->group("Model");
     c->add_flag("--plain", o->plain, "Without exposure, albedo floor and opacity weights: the reference's preprocessing")->group("Model");
+    c->add_flag("--no-demodulation", o->no_demodulation, "Without dividing the radiance by the albedo")->group("Model");
     add_device_options(*c, o->device);
     c->callback([o] { train(*o); });
 }

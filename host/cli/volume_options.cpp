@@ -26,13 +26,6 @@ std::vector<T> parts_of(const std::string& text) {
     }
 }
 
-Int3 parse_dims(const std::string& text) {
-    const auto n = parts_of<int>(text);
-    if (n.size() != 3 || n[0] < 1 || n[1] < 1 || n[2] < 1)
-        throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected WxHxD, for instance 256x256x128", text), "--dims");
-    return {n[0], n[1], n[2]};
-}
-
 Double3 parse_spacing(const std::string& text) {
     auto s = parts_of<double>(text);
     if (s.size() == 1) s.assign(3, s.front());
@@ -43,6 +36,13 @@ Double3 parse_spacing(const std::string& text) {
 }
 
 } // namespace
+
+Int3 parse_dims(const std::string& text) {
+    const auto n = parts_of<int>(text);
+    if (n.size() != 3 || n[0] < 1 || n[1] < 1 || n[2] < 1)
+        throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected WxHxD, for instance 256x256x128", text), "--dims");
+    return {n[0], n[1], n[2]};
+}
 
 void add_volume_options(CLI::App& command, VolumeReadOptions& options) {
     constexpr const char* group = "Reading the volume";

@@ -10,4 +10,7 @@ namespace clvr {
 /// Error{usage}.
 void add_volume_options(CLI::App& command, VolumeReadOptions& options);
 
+/// "256x256x128". Throws Error{usage} naming --dims.
+Int3 parse_dims(const std::string& text);
+
 } // namespace clvr

@@ -57,4 +57,10 @@ const Dataset& dataset_named(const std::string& name) {
     throw Error(ErrorKind::usage, fmt::format("there is no such dataset; there are: {}", names), name);
 }
 
+const Dataset* published_as(const std::string& computed) {
+    for (const Dataset& d : datasets())
+        if (!d.computed.empty() && d.computed == computed) return &d;
+    return nullptr;
+}
+
 } // namespace clvr

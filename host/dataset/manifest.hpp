@@ -28,6 +28,8 @@ struct Dataset {
 const std::vector<Dataset>& datasets();
 /// Throws Error{usage} naming those that there are.
 const Dataset& dataset_named(const std::string& name);
+/// The dataset that a computed volume stands in for; null: none.
+const Dataset* published_as(const std::string& computed);
 /// Throws Error{internal}: what is missing or of another type; `where` names the file.
 Dataset parse_manifest(const std::string& text, const std::string& where);
 

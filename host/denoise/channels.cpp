@@ -25,7 +25,7 @@ ChannelPlan::ChannelPlan(const Model& model, bool with_target)
     const auto has = [&](const char* name) {
         return std::find(model.channels.begin(), model.channels.end(), name) != model.channels.end();
     };
-    demodulate_ = has("albedo.R") && has("albedo.G") && has("albedo.B");
+    demodulate_ = model.demodulation && has("albedo.R") && has("albedo.G") && has("albedo.B");
     planes_ = {"R", "G", "B"};
     if (demodulate_) planes_.insert(planes_.end(), {"albedo.R", "albedo.G", "albedo.B"});
     const auto add = [&](const std::string& name) {

@@ -47,6 +47,15 @@ std::vector<std::string> reference_channels() {
     return {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"};
 }
 
+Model default_settings() {
+    Model m;
+    m.channels = reference_channels();
+    m.exposure = true;
+    m.albedo_floor = 1.0f / 32;
+    m.opacity_weight = true;
+    return m;
+}
+
 std::vector<float> Model::flat() const {
     std::vector<float> all;
     for (const auto* t : tensors_of(*this)) all.insert(all.end(), t->begin(), t->end());

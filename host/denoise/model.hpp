@@ -25,6 +25,7 @@ struct Model {
     // Preprocessing beyond SPEC.md; absent from a file means these values.
     bool exposure = false;                    ///< radiance scaled by 0.18 / exp2(mean log2 luminance), clamped at 32 (DESIGN.md "Denoiser")
     float albedo_floor = 0x1p-20f;            ///< radiance is divided and remultiplied by max(albedo, this)
+    bool demodulation = true;                 ///< where the channels have the three of albedo; false: radiance is taken as it is
     bool opacity_weight = false;              ///< a pixel counts in the splat by its opacity.A, and the output is times that
     std::map<std::string, std::string> notes; ///< further metadata ("clvr.training", ...): how it was made; kept when the file is copied
 
@@ -43,6 +44,9 @@ struct Model {
 
 /// Channels of a file with tensors alone and C_in = 10: R G B, albedo.R G B, normal.X Y Z, depth.Z.
 std::vector<std::string> reference_channels();
+
+/// clvr's own choice for a new network: channels, sizes and switches, without tensors.
+Model default_settings();
 
 /// Sizes the tensors and draws them as the reference does: Glorot uniform kernels, zero biases. The same bits for a seed on every machine.
 void initialise(Model& model, std::uint64_t seed);

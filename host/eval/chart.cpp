@@ -65,7 +65,8 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-std::string line_chart(const std::string& title, const std::string& x_label, const std::vector<Series>& series, bool logarithmic) {
+std::string line_chart(const std::string& title, const std::string& x_label, const std::vector<Series>& series, bool logarithmic,
+                       const std::vector<std::string>& x_names) {
     Axis axis;
     std::size_t count = 0;
     for (const Series& s : series) {
@@ -89,7 +90,8 @@ std::string line_chart(const std::string& title, const std::string& x_label, con
                            left, right, axis.y(v), left - 6, axis.y(v) + 4, v);
     const std::size_t every = std::max<std::size_t>(1, (count + 9) / 10);
     for (std::size_t k = 0; k < count; k += every)
-        svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", x(k), bottom + 16, k + 1);
+        svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", x(k), bottom + 16,
+                           k < x_names.size() ? escaped(x_names[k]) : std::to_string(k + 1));
     svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", (left + right) / 2, bottom + 32, escaped(x_label));
     for (std::size_t s = 0; s < series.size(); ++s) {
         const char* colour = colours[s % colours.size()];

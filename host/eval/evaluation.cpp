@@ -15,15 +15,6 @@ namespace {
 constexpr double Metrics::*measures[] = {&Metrics::psnr,  &Metrics::ssim,   &Metrics::ssim_opaque, &Metrics::rmse,
                                          &Metrics::smape, &Metrics::relmse, &Metrics::flip};
 
-Metrics mean_of(const std::vector<Metrics>& views) {
-    Metrics mean;
-    for (const auto measure : measures) {
-        for (const Metrics& m : views) mean.*measure += m.*measure;
-        mean.*measure /= static_cast<double>(views.size());
-    }
-    return mean;
-}
-
 PairsFolder with_references(const std::string& folder, int frame) {
     PairsFolder pairs = read_pairs(folder);
     const int frames = static_cast<int>(pairs.views.front().noisy.size());
@@ -44,6 +35,15 @@ auto naming(const std::string& file, F f) {
 }
 
 } // namespace
+
+Metrics mean_of(const std::vector<Metrics>& views) {
+    Metrics mean;
+    for (const auto measure : measures) {
+        for (const Metrics& m : views) mean.*measure += m.*measure;
+        mean.*measure /= static_cast<double>(views.size());
+    }
+    return mean;
+}
 
 std::vector<Candidate> candidates(const Device& device, const std::vector<std::pair<std::string, Model>>& models,
                                   const Baselines& baselines) {
@@ -74,8 +74,12 @@ Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string&
     return e;
 }
 
-Baselines best_baselines(const Device& device, const std::string& folder, int frame, const std::function<void(double)>& seen) {
-    const PairsFolder pairs = with_references(folder, frame);
+Baselines best_baselines(const Device& device, const std::string& folder, int frame, const std::function<void(double)>& seen, int views) {
+    PairsFolder pairs = with_references(folder, frame);
+    const std::size_t there = pairs.views.size(),
+                      wanted = views > 0 ? std::min<std::size_t>(there, static_cast<std::size_t>(views)) : there;
+    for (std::size_t k = 0; k < wanted; ++k) pairs.views[k] = pairs.views[k * there / wanted];
+    pairs.views.resize(wanted);
     const auto noisy_of = [&](const PairView& view) { return view.noisy[static_cast<std::size_t>(frame)]; };
     constexpr double factors[] = {0.5, 1, 2};
     std::vector<Baselines> grid;

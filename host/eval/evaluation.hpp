@@ -44,7 +44,12 @@ struct Evaluation {
 Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string& folder, int frame,
                     const std::function<void(double)>& seen = {});
 
-/// The settings with the best mean PSNR over a folder, each of a 3x3 grid around the defaults (a factor of 2 between neighbours).
-Baselines best_baselines(const Device& device, const std::string& folder, int frame, const std::function<void(double)>& seen = {});
+/// The settings with the best mean PSNR over a folder, each of a 3x3 grid around the defaults (a factor of 2 between neighbours). `views`:
+/// over that many of the folder's views, evenly spread; 0: all.
+Baselines best_baselines(const Device& device, const std::string& folder, int frame, const std::function<void(double)>& seen = {},
+                         int views = 0);
+
+/// Mean of each measure.
+Metrics mean_of(const std::vector<Metrics>& views);
 
 } // namespace clvr

@@ -140,58 +140,111 @@ std::vector<std::size_t> telling_views(const Score& score) {
     return {order.front(), order[order.size() / 2], order.back()};
 }
 
-std::string view_section(const Evaluation& e, const std::vector<Candidate>& candidates, const PairView& files, std::size_t view,
-                         const ReportOptions& options) {
-    const Tonemap& tonemap = options.tonemap;
-    const Frame noisy = read_exr(files.noisy[static_cast<std::size_t>(options.frame)]), reference = read_exr(files.reference);
+/// A view: pictures, crops and FLIP maps of the first part, then the crops of the others.
+std::string view_section(const std::vector<ReportPart>& parts, const PairView& files, std::size_t view, const Tonemap& tonemap) {
+    const Frame reference = read_exr(files.reference);
     const auto [x, y] = most_detailed(reference);
-    std::string pictures, crops, maps;
-    const auto add = [&](const Frame& frame, const std::string& caption) {
-        pictures += figure(cut(frame, 0, 0, frame.width, frame.height), tonemap, caption, false);
-        crops += figure(cut(frame, x, y, crop_size, crop_size), tonemap, caption, true);
+    const auto crop_of = [&, x0 = x, y0 = y](const Frame& frame, const std::string& caption) {
+        return figure(cut(frame, x0, y0, crop_size, crop_size), tonemap, caption, true);
     };
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-        const Frame done = candidates[k].denoise(noisy);
-        const Metrics& m = e.scores[k].views[view];
-        add(done, fmt::format("{}: {:.2f} dB, SSIM {:.3f}", candidates[k].name, m.psnr, m.ssim));
-        maps += figure(flip_picture(done, reference), {"none", 0}, fmt::format("{}: FLIP {:.4f}", candidates[k].name, m.flip), false);
+    std::string pictures, crops, maps, further;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        const ReportPart& part = parts[p];
+        const Frame noisy = read_exr(files.noisy[static_cast<std::size_t>(part.frame)]);
+        std::string row;
+        for (std::size_t k = 0; k < part.candidates.size(); ++k) {
+            const Frame done = part.candidates[k].denoise(noisy);
+            const Metrics& m = part.evaluation.scores[k].views[view];
+            const std::string caption = fmt::format("{}: {:.2f} dB, SSIM {:.3f}", part.candidates[k].name, m.psnr, m.ssim);
+            row += crop_of(done, caption);
+            if (p > 0) continue;
+            pictures += figure(cut(done, 0, 0, done.width, done.height), tonemap, caption, false);
+            maps +=
+                figure(flip_picture(done, reference), {"none", 0}, fmt::format("{}: FLIP {:.4f}", part.candidates[k].name, m.flip), false);
+        }
+        row += crop_of(reference, "reference");
+        if (p == 0)
+            crops = row;
+        else
+            further += fmt::format("<p>{}:</p><div class=\"row\">{}</div>\n", escaped(part.name), row);
     }
-    add(reference, "reference");
+    pictures += figure(cut(reference, 0, 0, reference.width, reference.height), tonemap, "reference", false);
     return fmt::format("<h2>{}</h2>\n<div class=\"row\">{}</div>\n<p>At {}, {}, magnified:</p><div class=\"row\">{}</div>\n<p>FLIP (black: "
-                       "equal):</p><div class=\"row\">{}</div>\n",
-                       escaped(std::filesystem::path(e.views[view]).filename().string()), pictures, x, y, crops, maps);
+                       "equal):</p><div class=\"row\">{}</div>\n{}",
+                       escaped(std::filesystem::path(parts.front().evaluation.views[view]).filename().string()), pictures, x, y, crops,
+                       maps, further);
+}
+
+/// Means of a measure: a row a candidate, a column a part; and as curves.
+std::string measure_by_part(const std::vector<ReportPart>& parts, double Metrics::*measure, const std::string& name, int digits) {
+    std::vector<std::string> names;
+    std::string html = fmt::format("<div><h3>{}</h3><table><tr><th></th>", escaped(name));
+    for (const ReportPart& part : parts) {
+        names.push_back(part.name);
+        html += fmt::format("<th>{}</th>", escaped(part.name));
+    }
+    html += "</tr>\n";
+    std::vector<Series> curves;
+    for (std::size_t k = 0; k < parts.front().candidates.size(); ++k) {
+        curves.push_back({parts.front().candidates[k].name, {}});
+        html += fmt::format("<tr><td>{}</td>", escaped(curves.back().name));
+        for (const ReportPart& part : parts) {
+            curves.back().values.push_back(part.evaluation.scores[k].mean.*measure);
+            html += fmt::format("<td>{:.{}f}</td>", curves.back().values.back(), digits);
+        }
+        html += "</tr>\n";
+    }
+    return html + "</table>\n" + line_chart(name, "noisy input", curves, false, names) + "</div>\n";
+}
+
+void check_parts(const std::vector<ReportPart>& parts, std::size_t views) {
+    for (const ReportPart& part : parts)
+        if (part.evaluation.scores.size() != part.candidates.size() || part.candidates.empty() || part.evaluation.views.size() != views ||
+            part.candidates.size() != parts.front().candidates.size())
+            throw Error(ErrorKind::internal, "the report's evaluation is of other candidates or views");
+    if (parts.empty()) throw Error(ErrorKind::internal, "a report of nothing");
+}
+
+/// Means, and PSNR by view.
+std::string part_section(const ReportPart& part, const std::string& beside) {
+    std::vector<std::pair<std::string, Metrics>> means;
+    std::vector<Series> psnrs;
+    for (const Score& s : part.evaluation.scores) {
+        means.emplace_back(s.name, s.mean);
+        psnrs.push_back({s.name, {}});
+        for (const Metrics& m : s.views) psnrs.back().values.push_back(m.psnr);
+    }
+    return fmt::format("<h2>{}Mean of {} views</h2>\n{}<div class=\"row\">{}{}</div>\n", part.name.empty() ? "" : escaped(part.name) + ": ",
+                       part.evaluation.views.size(), table(means), line_chart("PSNR by view [dB]", "view", psnrs), beside);
 }
 
 } // namespace
 
-std::string html_report(const Evaluation& e, const std::vector<Candidate>& candidates, const std::string& folder,
-                        const ReportOptions& options) {
+std::string html_report(const std::vector<ReportPart>& parts, const std::string& folder, const ReportOptions& options) {
     const PairsFolder pairs = read_pairs(folder);
-    if (e.scores.size() != candidates.size() || e.scores.empty() || e.views.size() != pairs.views.size())
-        throw Error(ErrorKind::internal, "the report's evaluation is of other candidates or views");
+    check_parts(parts, pairs.views.size());
     std::string html =
         fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><style>{1}</style></head>"
                     "<body>\n<h1>{0}</h1>\n<p class=\"notes\">",
                     escaped(options.title), style);
     for (const auto& note : options.notes) html += escaped(note) + "<br>\n";
-    std::vector<std::pair<std::string, Metrics>> means;
-    std::vector<Series> psnrs;
-    for (const Score& s : e.scores) {
-        means.emplace_back(s.name, s.mean);
-        psnrs.push_back({s.name, {}});
-        for (const Metrics& m : s.views) psnrs.back().values.push_back(m.psnr);
-    }
-    html += fmt::format("</p>\n<h2>Mean of {} views</h2>\n{}", e.views.size(), table(means));
-    html +=
-        fmt::format("<div class=\"row\">{}{}</div>\n", line_chart("PSNR by view [dB]", "view", psnrs), training_charts(options.trainings));
-    const Score& first = e.scores[std::min<std::size_t>(1, e.scores.size() - 1)];
-    for (const std::size_t view : telling_views(first)) html += view_section(e, candidates, pairs.views[view], view, options);
+    html += "</p>\n";
+    if (parts.size() > 1)
+        html += fmt::format("<h2>Means by noisy input</h2>\n<div class=\"row\">{}{}{}</div>\n",
+                            measure_by_part(parts, &Metrics::psnr, "PSNR [dB]", 2), measure_by_part(parts, &Metrics::ssim, "SSIM", 4),
+                            measure_by_part(parts, &Metrics::flip, "FLIP", 4));
+    for (const ReportPart& part : parts) html += part_section(part, &part == &parts.front() ? training_charts(options.trainings) : "");
+    const auto& scores = parts.front().evaluation.scores;
+    for (const std::size_t view : telling_views(scores[std::min<std::size_t>(1, scores.size() - 1)]))
+        html += view_section(parts, pairs.views[view], view, options.tonemap);
     html += "<details><summary>Every view</summary>\n";
-    for (std::size_t v = 0; v < e.views.size(); ++v) {
-        std::vector<std::pair<std::string, Metrics>> rows;
-        for (const Score& s : e.scores) rows.emplace_back(s.name, s.views[v]);
-        html += fmt::format("<h3>{}</h3>\n{}", escaped(std::filesystem::path(e.views[v]).filename().string()), table(rows));
-    }
+    for (const ReportPart& part : parts)
+        for (std::size_t v = 0; v < part.evaluation.views.size(); ++v) {
+            std::vector<std::pair<std::string, Metrics>> rows;
+            for (const Score& s : part.evaluation.scores) rows.emplace_back(s.name, s.views[v]);
+            const std::string file = std::filesystem::path(part.evaluation.views[v]).filename().string();
+            html += fmt::format("<h3>{}</h3>\n{}", escaped(part.name.empty() ? file : file + ", " + part.name), table(rows));
+        }
     return html + "</details>\n</body></html>\n";
 }
 

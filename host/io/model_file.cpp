@@ -58,6 +58,7 @@ void read_settings(const std::string& text, const std::string& where, Model& m) 
     fields.get("albedo_floor", floor);
     m.albedo_floor = static_cast<float>(floor);
     fields.get("opacity_weight", m.opacity_weight);
+    fields.get("demodulation", m.demodulation);
     fields.done();
 }
 
@@ -103,6 +104,18 @@ Model model_of(const TensorFile& file, const std::string& where) {
     return m;
 }
 
+std::string model_settings_json(const Model& m) {
+    nlohmann::ordered_json levels = nlohmann::ordered_json::array();
+    for (const auto& level : m.levels) levels.push_back({level.pixels, level.codes});
+    nlohmann::ordered_json settings{{"channels", m.channels},
+                                    {"levels", levels},
+                                    {"exposure", m.exposure},
+                                    {"albedo_floor", static_cast<double>(m.albedo_floor)},
+                                    {"opacity_weight", m.opacity_weight}};
+    if (!m.demodulation) settings["demodulation"] = false; // absent: on, as in files of before the switch
+    return settings.dump();
+}
+
 TensorFile tensors_of(const Model& m) {
     TensorFile file;
     const std::int64_t in = static_cast<std::int64_t>(m.channels.size()), k = m.kernel;
@@ -110,16 +123,9 @@ TensorFile tensors_of(const Model& m) {
                     {"conv1.bias", float_tensor({m.hidden}, m.conv1_bias)},
                     {"conv2.weight", float_tensor({m.outputs(), m.hidden, k, k}, m.conv2_weight)},
                     {"conv2.bias", float_tensor({m.outputs()}, m.conv2_bias)}};
-    nlohmann::ordered_json levels = nlohmann::ordered_json::array();
-    for (const auto& level : m.levels) levels.push_back({level.pixels, level.codes});
-    const nlohmann::ordered_json settings{{"channels", m.channels},
-                                          {"levels", levels},
-                                          {"exposure", m.exposure},
-                                          {"albedo_floor", static_cast<double>(m.albedo_floor)},
-                                          {"opacity_weight", m.opacity_weight}};
     file.metadata = m.notes;
     file.metadata[format_key] = format_tag;
-    file.metadata[settings_key] = settings.dump();
+    file.metadata[settings_key] = model_settings_json(m);
     return file;
 }
 

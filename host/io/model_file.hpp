@@ -14,6 +14,9 @@ Model read_model(const std::string& path);
 /// Writes the four tensors in order, the settings and the notes as metadata; atomically.
 void write_model(const Model& model, const std::string& path);
 
+/// The settings alone, as the metadata has them: channels, levels, switches.
+std::string model_settings_json(const Model& model);
+
 /// The same within a larger file (a checkpoint). `where` names it in errors.
 Model model_of(const TensorFile& file, const std::string& where);
 TensorFile tensors_of(const Model& model);

@@ -113,6 +113,14 @@ void Renderer::aim(const Camera& camera, int view) {
     }
 }
 
+void Renderer::turn_to(const Scene& scene) {
+    refuse_what_host_memory_cannot_hold(scene);
+    scene_.seed = scene.seed;
+    scene_.spp = scene.spp;
+    scene_.features = scene.features;
+    aim(scene.camera, scene.view);
+}
+
 Renderer::~Renderer() = default;
 
 /// Deals runs of `tile` pixel numbers to the devices as they become free: work(worker, first, count), on a thread a device.

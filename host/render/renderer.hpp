@@ -43,6 +43,9 @@ public:
 
     /// Turns to another camera and view number (part of the random key); volume and classification stay on the devices.
     void aim(const Camera& camera, int view);
+    /// Turns to another frame of the scene: takes over camera, view number, seed, samples per pixel and whether features are marched,
+    /// nothing else. The same bits as a renderer made for that scene.
+    void turn_to(const Scene& scene);
 
     /// Renders the scene. `frame.attributes` gets "clvr.spp" (samples reached). Throws Error{interrupted} when cancelled before one pass
     /// was done.

@@ -12,7 +12,8 @@ struct PairView {
 };
 
 struct PairsFolder {
-    std::string split; ///< "train" or "test"
+    std::string split;    ///< "train" or "test"
+    std::vector<int> spp; ///< samples per pixel of each noisy frame of a view
     std::vector<PairView> views;
 };
 

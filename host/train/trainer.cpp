@@ -44,27 +44,30 @@ std::string stem_of(const std::string& path) { return std::filesystem::path(path
 std::string configuration_of(const Model& model, const TrainerConfig& c, const std::vector<std::string>& views) {
     nlohmann::ordered_json levels = nlohmann::ordered_json::array();
     for (const auto& l : model.levels) levels.push_back({l.pixels, l.codes});
-    return nlohmann::ordered_json{{"loss", static_cast<int>(c.step.loss)},
-                                  {"convolution", c.step.convolution == ConvolutionBackend::clblast ? "clblast" : "direct"},
-                                  {"patch", c.step.patch},
-                                  {"batch", c.step.batch},
-                                  {"epochs", c.epochs},
-                                  {"patches_per_image", c.patches_per_image},
-                                  {"learning_rate", c.learning_rate},
-                                  {"schedule", c.cosine ? "cosine" : "constant"},
-                                  {"augment", c.augment},
-                                  {"betas", {c.step.beta1, c.step.beta2}},
-                                  {"clip_norm", c.step.clip_norm},
-                                  {"seed", c.seed},
-                                  {"channels", model.channels},
-                                  {"hidden", model.hidden},
-                                  {"kernel", model.kernel},
-                                  {"levels", levels},
-                                  {"exposure", model.exposure},
-                                  {"opacity_weight", model.opacity_weight},
-                                  {"albedo_floor", static_cast<double>(model.albedo_floor)},
-                                  {"views", views}}
-        .dump();
+    nlohmann::ordered_json all{{"loss", static_cast<int>(c.step.loss)},
+                               {"convolution", c.step.convolution == ConvolutionBackend::clblast ? "clblast" : "direct"},
+                               {"patch", c.step.patch},
+                               {"batch", c.step.batch},
+                               {"epochs", c.epochs},
+                               {"patches_per_image", c.patches_per_image},
+                               {"learning_rate", c.learning_rate},
+                               {"schedule", c.cosine ? "cosine" : "constant"},
+                               {"augment", c.augment},
+                               {"betas", {c.step.beta1, c.step.beta2}},
+                               {"clip_norm", c.step.clip_norm},
+                               {"seed", c.seed},
+                               {"channels", model.channels},
+                               {"hidden", model.hidden},
+                               {"kernel", model.kernel},
+                               {"levels", levels},
+                               {"exposure", model.exposure},
+                               {"opacity_weight", model.opacity_weight},
+                               {"albedo_floor", static_cast<double>(model.albedo_floor)},
+                               {"views", views}};
+    // Beside what a checkpoint of before these settings says.
+    if (c.steps > 0) all["steps"] = c.steps;
+    if (!model.demodulation) all["demodulation"] = false;
+    return all.dump();
 }
 
 } // namespace
@@ -91,9 +94,13 @@ struct Trainer::State {
         return (patches + config.step.batch - 1) / config.step.batch;
     }
 
+    std::int64_t total_steps() const {
+        return config.steps > 0 ? config.steps : static_cast<std::int64_t>(steps_per_epoch()) * config.epochs;
+    }
+
     double learning_rate(std::int64_t at) const {
         if (!config.cosine) return config.learning_rate;
-        const double total = static_cast<double>(steps_per_epoch()) * config.epochs;
+        const double total = static_cast<double>(total_steps());
         return config.learning_rate * 0.5 * (1 + std::cos(3.14159265358979323846 * static_cast<double>(at) / total));
     }
 
@@ -176,17 +183,19 @@ const std::vector<EpochRecord>& Trainer::records() const { return state_->checkp
 bool Trainer::run(const std::atomic<bool>& cancelled, const std::function<void(const TrainerProgress&)>& progress) {
     State& s = *state_;
     const TrainerConfig& c = s.config;
-    const int per_epoch = s.steps_per_epoch();
+    const std::int64_t per_epoch = s.steps_per_epoch(), total = s.total_steps();
     std::int64_t at = s.step.state().step, collected = at;
     TrainerProgress p;
-    for (int epoch = static_cast<int>(at / per_epoch); epoch < c.epochs; ++epoch) {
+    if (at >= total) s.save(); // finished before: its files are there again, even those that someone removed
+    for (int epoch = static_cast<int>(at / per_epoch); at < total; ++epoch) {
         const std::vector<Crop> crops = epoch_crops(c.seed, epoch, s.sizes, s.frames, c.patches_per_image, c.step.patch, c.augment);
-        for (int k = static_cast<int>(at % per_epoch); k < per_epoch; ++k) {
-            const auto from = crops.begin() + static_cast<std::ptrdiff_t>(k) * c.step.batch;
+        const std::int64_t count = std::min(per_epoch, total - epoch * per_epoch);
+        for (std::int64_t k = at % per_epoch; k < count; ++k) {
+            const auto from = crops.begin() + static_cast<std::ptrdiff_t>(k * c.step.batch);
             const auto to = std::min(crops.end(), from + c.step.batch);
             s.step.step({from, to}, s.learning_rate(at));
             ++at;
-            const bool last = k + 1 == per_epoch;
+            const bool last = k + 1 == count;
             if (last || cancelled || at % 16 == 0) {
                 const std::int64_t nan = s.collect(collected, p.loss);
                 if (nan >= 0)
@@ -195,7 +204,7 @@ bool Trainer::run(const std::atomic<bool>& cancelled, const std::function<void(c
                         fmt::format("the loss became NaN at step {}; the checkpoint of epoch {} is kept. Try a lower --lr or --clip-norm 1",
                                     nan, s.checkpoint.records.size()));
                 collected = at;
-                p.done = static_cast<double>(at) / (static_cast<double>(per_epoch) * c.epochs);
+                p.done = static_cast<double>(at) / static_cast<double>(total);
                 p.epoch = epoch + 1;
                 progress(p);
             }
@@ -204,7 +213,7 @@ bool Trainer::run(const std::atomic<bool>& cancelled, const std::function<void(c
                 return false;
             }
         }
-        EpochRecord record{s.checkpoint.loss_sum / per_epoch, s.validate_model()};
+        EpochRecord record{s.checkpoint.loss_sum / static_cast<double>(count), s.validate_model()};
         s.checkpoint.loss_sum = 0;
         if (s.checkpoint.records.empty() || record.validation > s.checkpoint.best_validation) {
             s.checkpoint.best = s.step.model();
@@ -214,7 +223,7 @@ bool Trainer::run(const std::atomic<bool>& cancelled, const std::function<void(c
         s.checkpoint.records.push_back(record);
         s.save();
         progress(p);
-        if (cancelled) return epoch + 1 == c.epochs;
+        if (cancelled) return at == total;
     }
     return true;
 }

@@ -13,6 +13,7 @@ namespace clvr {
 struct TrainerConfig {
     StepConfig step;
     int epochs = 200;
+    std::int64_t steps = 0;     ///< ends after so many, within an epoch if need be; 0: with the last epoch
     int patches_per_image = 50; ///< drawn anew each epoch from each view
     double learning_rate = 1e-4;
     bool cosine = false; ///< the learning rate falls to 0 along half a cosine; else it is constant

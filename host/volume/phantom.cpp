@@ -70,21 +70,29 @@ void store(const std::vector<std::int16_t>& hu, std::size_t first, Voxels& v) {
     });
 }
 
-} // namespace
-
-std::vector<std::string> phantom_names() { return {"head", "head-closed", "beetle", "snake", "vessels", "foam"}; }
-
-Voxels make_phantom(Device& device, const std::string& name, const PhantomOptions& options) {
+MadeVolume volume_named(const std::string& name, std::uint64_t seed) {
     const std::vector<std::string> names = phantom_names();
     if (std::find(names.begin(), names.end(), name) == names.end())
         throw Error(ErrorKind::usage, fmt::format("there is no such computed volume; there are: {}", fmt::join(names, ", ")),
                     "demo:" + name);
-    const std::uint64_t seed = options.seed;
-    const MadeVolume made = name == "beetle"    ? beetle_volume(seed)
-                            : name == "snake"   ? snake_volume(seed)
-                            : name == "vessels" ? vessel_volume(seed)
-                            : name == "foam"    ? foam_volume()
-                                                : head_volume(name == "head");
+    return name == "beetle"    ? beetle_volume(seed)
+           : name == "snake"   ? snake_volume(seed)
+           : name == "vessels" ? vessel_volume(seed)
+           : name == "foam"    ? foam_volume()
+                               : head_volume(name == "head");
+}
+
+} // namespace
+
+std::vector<std::string> phantom_names() { return {"head", "head-closed", "beetle", "snake", "vessels", "foam"}; }
+
+PhantomSize phantom_size(const std::string& name) {
+    const MadeVolume made = volume_named(name, 0);
+    return {made.dims, made.type};
+}
+
+Voxels make_phantom(Device& device, const std::string& name, const PhantomOptions& options) {
+    const MadeVolume made = volume_named(name, options.seed);
     const Int3 dims = options.dims.value_or(made.dims);
     const VoxelType type = options.type.value_or(made.type);
     if (*std::min_element(dims.begin(), dims.end()) < 1 || *std::max_element(dims.begin(), dims.end()) > 2048)
@@ -118,8 +126,8 @@ Voxels make_phantom(Device& device, const std::string& name, const PhantomOption
     params.origin = float4_of(v.geometry.origin, 1 / ramp_mm);
     params.spacing = float4_of(spacing, 0);
     for (std::size_t k = 0; k < made.bodies.size(); ++k) params.far[k] = made.bodies[k].far;
-    params.key0 = static_cast<uint>(seed);
-    params.key1 = static_cast<uint>(seed >> 32) ^ 0x51ed270bu;
+    params.key0 = static_cast<uint>(options.seed);
+    params.key1 = static_cast<uint>(options.seed >> 32) ^ 0x51ed270bu;
     params.opened = made.opened;
 
     std::vector<PhantomPart> all_parts;
@@ -135,6 +143,8 @@ Voxels make_phantom(Device& device, const std::string& name, const PhantomOption
     Kernel kernel = device.kernel("volume/" + made.kernel, {{"CLVR_WIDTH", std::to_string(width)}});
     const Range group = kernel.group(static_cast<std::size_t>(device.tunable("phantom_group", width == 1 ? 64 : 1)));
     for (int z = 0; z < dims[2]; z += launch_slices) {
+        if (options.cancelled && *options.cancelled)
+            throw Error(ErrorKind::interrupted, "interrupted while the volume was computed", v.source);
         const int slices = std::min(launch_slices, dims[2] - z);
         const PartLists lists = list_parts(device, made, {0, 0, z}, {params.cells.x, params.cells.y, cells_for(slices, 2)}, spacing);
         const Range packets{static_cast<std::size_t>((dims[0] + width - 1) / width), static_cast<std::size_t>(dims[1]),

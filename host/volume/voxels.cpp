@@ -26,6 +26,12 @@ const char* voxel_type_name(VoxelType t) {
     throw std::logic_error("voxel type");
 }
 
+std::optional<VoxelType> voxel_type_named(const std::string& name) {
+    for (const VoxelType t : {VoxelType::u8, VoxelType::i8, VoxelType::u16, VoxelType::i16, VoxelType::f32})
+        if (name == voxel_type_name(t)) return t;
+    return std::nullopt;
+}
+
 namespace {
 
 /// Where a value falls between low and high.

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,6 +18,8 @@ enum class VoxelType { u8, i8, u16, i16, f32 };
 constexpr std::size_t voxel_bytes(VoxelType t) { return t == VoxelType::f32 ? 4 : (t == VoxelType::u16 || t == VoxelType::i16) ? 2 : 1; }
 /// "u8", "i8", "u16", "i16", "f32".
 const char* voxel_type_name(VoxelType t);
+/// The type of such a name; nothing for another text.
+std::optional<VoxelType> voxel_type_named(const std::string& name);
 
 /// Calls f(T{}) with the C++ type of `t`.
 template <class F>

@@ -25,6 +25,7 @@ only host/io runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/i
 only host/train runtime/ host/frame/ host/denoise/ host/io/ host/train/ kernels/shared/
 only host/eval runtime/ host/frame/ host/denoise/ host/io/ host/train/ host/eval/
 only host/dataset runtime/ host/dataset/
+only host/experiment runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/io/ host/train/ host/eval/ host/dataset/ host/experiment/
 only host/cli runtime/ host/ kernels/shared/
 only kernels/shared shared/
 only kernels/lib shared/ lib/
