@@ -32,7 +32,7 @@ for k in "${!volumes[@]}"; do
     read -r dims type seed <<<"${shapes[k]}"
     volume "${volumes[k]}" "${volumes[k]}" "$dims" "$type" "$seed"
     # shellcheck disable=SC2086 # the light is several words
-    pairs "${volumes[k]}-light" "$((k + 11))" train 12 "$folder/volumes/${volumes[k]}.nii.gz" "${functions[k]}" ${lights[k]}
+    pairs "${volumes[k]}-light" "$((k + 11))" train 6 "$folder/volumes/${volumes[k]}.nii.gz" "${functions[k]}" ${lights[k]}
 done
 pairs validation 21 test 6 demo:head auto,ct-skin
 

@@ -4,6 +4,7 @@
 #include "host/denoise/denoiser.hpp"
 #include "host/io/frame_file.hpp"
 #include "host/io/model_file.hpp"
+#include "host/render/scene.hpp"
 #include "runtime/error.hpp"
 
 #include <fmt/format.h>
@@ -17,8 +18,9 @@ namespace clvr {
 namespace {
 
 struct Options {
-    std::string input, model;
+    std::string input, model = "default";
     std::vector<std::string> outputs, show, map;
+    int spp = 0; ///< 0: as the frame says
     Tonemap tonemap;
     DeviceOptions device;
 };
@@ -87,11 +89,12 @@ void write_shown(const Frame& frame, const std::string& output, const Tonemap& t
 
 void denoise(const Options& o) {
     if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr denoise");
-    if (o.model.empty()) throw Error(ErrorKind::usage, "no model given: add --model FILE, as `clvr train` writes it", "clvr denoise");
+    if (o.spp < 0 || o.spp > largest_spp) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.spp, largest_spp), "--spp");
     const DenoiserView view = view_of(o.show);
     for (const auto& path : o.outputs) check_frame_path(path);
     const Model model = read_model(o.model);
     Frame frame = read_exr(o.input);
+    if (o.spp > 0) frame.attributes["clvr.spp"] = std::to_string(o.spp);
     for (const auto& mapping : o.map) map_channels(frame, mapping, o.input);
     Device device = open_device(o.device);
     Denoiser denoiser(device, model);
@@ -113,7 +116,8 @@ void add_denoise_command(CLI::App& app) {
     auto o = std::make_shared<Options>();
     c->add_option("IN", o->input, "Noisy frame (.exr) with the channels that the model names")->required();
     c->add_option("-o,--output", o->outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
-    c->add_option("--model", o->model, "Trained network (.safetensors)")->type_name("FILE");
+    c->add_option("--model", o->model, "Trained network (.safetensors) [the one inside clvr]")->type_name("FILE");
+    c->add_option("--spp", o->spp, "Samples per pixel of a frame that does not say it (another renderer's)");
     c->add_option("--map", o->map,
                   "Take another renderer's channels: albedo=DiffCol, depth.Z=Depth.V, beauty=Combined (may be given again)")
         ->type_name("CLVR'S=THEIRS")

@@ -60,8 +60,8 @@ std::vector<std::string> names_of(const std::vector<std::string>& paths) {
     return names;
 }
 
-void eval(const Options& o) {
-    if (o.models.empty()) throw Error(ErrorKind::usage, "no model given: add --model FILE, as `clvr train` writes it", "clvr eval");
+void eval(Options o) {
+    if (o.models.empty()) o.models = {"default"};
     if (!o.report.empty()) check_writable(o.report);
     const ToneCurve known(o.tonemap);
     std::vector<std::pair<std::string, Model>> models;

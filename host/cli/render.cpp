@@ -89,8 +89,6 @@ void render(const RenderOptions& o) {
     if (o.turntable < 0 || o.turntable > 10000)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
-    if (o.denoise && o.model.empty())
-        throw Error(ErrorKind::usage, "no model given: add --model FILE, as `clvr train` writes it", "--denoise");
     Scene scene = scene_of(o);
     if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
     std::optional<Model> model;

@@ -169,7 +169,7 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--tonemap", o.tonemap, "PNG: filmic, aces, reinhard or none [filmic]")->group("Picture");
     c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Picture");
     c.add_flag("--denoise", o.denoise, "Denoise with a trained network; an EXR keeps the noisy picture as noisy.*")->group("Picture");
-    c.add_option("--model", o.model, "The network of --denoise (.safetensors)")->type_name("FILE")->group("Picture");
+    c.add_option("--model", o.model, "The network of --denoise (.safetensors) [the one inside clvr]")->type_name("FILE")->group("Picture");
     c.add_flag("--list-tf", o.list_transfer, "List the presets")->group("Volume");
     c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Device");
     add_scene_options(c, o);

@@ -25,7 +25,7 @@ struct RenderOptions {
     bool orthographic = false, list_transfer = false, no_features = false, denoise = false;
     double seconds = 0;
     int turntable = 0;
-    std::string model, save_scene;
+    std::string model = "default", save_scene;
     DeviceOptions devices;
 };
 

@@ -70,7 +70,7 @@ void ChannelPlan::check(const Frame& frame) const {
         for (const auto& [channel, values] : frame.channels) has.push_back(channel);
         throw Error(ErrorKind::input,
                     fmt::format("lacks {} that the model reads; it has {}",
-                                name == noise_channel ? "the attribute clvr.spp" : "channel " + name, fmt::join(has, " ")));
+                                name == noise_channel ? "the attribute clvr.spp (--spp gives it)" : "channel " + name, fmt::join(has, " ")));
     }
 }
 

@@ -134,7 +134,7 @@ Model read_model(const std::string& path) {
     if (path != "default" || std::filesystem::exists(path, failed)) return model_of(read_tensors(path), path);
     const auto found = embedded_models().find("default.safetensors");
     if (found == embedded_models().end())
-        throw Error(ErrorKind::usage, "no model given: add --model FILE, as `clvr train` writes it", "this build has no default model");
+        throw Error(ErrorKind::usage, "is not inside this build: add --model FILE, as `clvr train` writes it", "the default model");
     return model_of(parse_tensors(found->second, path), path);
 }
 void write_model(const Model& model, const std::string& path) { write_tensors(tensors_of(model), path); }

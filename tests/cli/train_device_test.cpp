@@ -185,12 +185,14 @@ TEST_F(Learning, RefusesWithOneLine) {
         {{"compare", path("none.exr"), path("none.exr"), "--tonemap", "sepia"}, 2},
         {{"compare", path("none.png"), path("none.png")}, 3},
         {{"compare", path("ball_24x20x16_uint8.json"), path("none.png")}, 3},
-        {{"eval", path("none")}, 2},
+        {{"eval", path("none")}, 3},
         {{"eval", path("none"), "--model", path("none.safetensors")}, 3},
-        {{"denoise", path("none.exr"), "-o", path("d.png")}, 2},
+        {{"denoise", path("none.exr"), "-o", path("d.png")}, 3},
         {{"denoise", path("none.exr"), "-o", path("d.png"), "--model", path("none.safetensors")}, 3},
         {{"denoise", path("none.exr"), "-o", path("d.png"), "--model", path("ball_24x20x16_uint8.raw")}, 3},
-        {{"render", path("ball_24x20x16_uint8.raw"), "-o", path("d.png"), "--denoise"}, 2},
+        {{"denoise", path("none.exr"), "-o", path("d.png"), "--spp", "-1"}, 2},
+        {{"render", path("ball_24x20x16_uint8.raw"), "-o", path("d.png"), "--denoise", "--mode", "dvr"}, 2},
+        {{"render", path("ball_24x20x16_uint8.raw"), "-o", path("d.png"), "--denoise", "--model", path("none.safetensors")}, 3},
     };
     for (const auto& [words, code] : cases) {
         const Outcome o = run(words);
