@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
     clvr::add_eval_command(app);
     clvr::add_dataset_command(app);
     clvr::add_experiment_command(app);
+    clvr::add_ablation_command(app);
     try {
         app.parse(argc, argv);
         if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");

@@ -14,6 +14,7 @@ void add_compare_command(CLI::App& app);    // compare.cpp
 void add_train_command(CLI::App& app);      // train.cpp
 void add_eval_command(CLI::App& app);       // eval.cpp
 void add_dataset_command(CLI::App& app);    // dataset.cpp
+void add_ablation_command(CLI::App& app);   // ablation.cpp
 void add_experiment_command(CLI::App& app); // experiment.cpp
 
 } // namespace clvr

@@ -2,9 +2,9 @@
 #include "host/cli/command_text.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/interrupt.hpp"
-#include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/source_commit.hpp"
+#include "host/cli/stage_display.hpp"
 #include "host/cli/volume_options.hpp"
 #include "host/dataset/download.hpp"
 #include "host/dataset/manifest.hpp"
@@ -110,24 +110,6 @@ ExperimentSettings settings_of(const Options& o) {
     return s;
 }
 
-/// One progress bar a stage; where there is no terminal, a line a stage.
-class Stages {
-public:
-    void operator()(const std::string& stage, double done, const std::string& note) {
-        if (stage != stage_) {
-            stage_ = stage;
-            bar_.emplace(stage, false);
-            spdlog::info("{}", stage);
-        }
-        bar_->update(done, note);
-    }
-    void end() { bar_.reset(); }
-
-private:
-    std::string stage_;
-    std::optional<ProgressBar> bar_;
-};
-
 void fetch(const Options& o, const std::string& folder, const std::atomic<bool>& interrupted) {
     const Dataset& d = *published(o.scene);
     std::error_code failed;
@@ -192,9 +174,9 @@ void experiment(const Options& o, const std::string& command) {
     const std::string folder = o.folder.empty() ? settings.name + "-" + settings.scale : o.folder;
     const std::atomic<bool>& interrupted = catch_interrupts();
     std::vector<Device> devices = open_devices(o.picture.devices);
-    Stages stages;
-    const ExperimentControl control{interrupted,
-                                    [&](const std::string& stage, double done, const std::string& note) { stages(stage, done, note); }};
+    StageDisplay stages;
+    const ExperimentControl control{
+        interrupted, [&](const std::string& stage, double done, const std::string& note) { stages.update(stage, done, note); }};
     if (o.dry_run) {
         const ExperimentEstimate estimate = estimate_experiment(settings, folder, devices, control);
         stages.end();

@@ -45,13 +45,19 @@ Metrics mean_of(const std::vector<Metrics>& views) {
     return mean;
 }
 
+Candidate noisy_input() {
+    return {"noisy", [](const Frame& noisy) { return noisy; }};
+}
+
+Candidate through_model(const Device& device, const std::string& name, const Model& model) {
+    const auto denoiser = std::make_shared<Denoiser>(device, model);
+    return {name, [denoiser](const Frame& noisy) { return denoiser->denoise(noisy); }};
+}
+
 std::vector<Candidate> candidates(const Device& device, const std::vector<std::pair<std::string, Model>>& models,
                                   const Baselines& baselines) {
-    std::vector<Candidate> all{{"noisy", [](const Frame& noisy) { return noisy; }}};
-    for (const auto& [name, model] : models) {
-        const auto denoiser = std::make_shared<Denoiser>(device, model);
-        all.push_back({name, [denoiser](const Frame& noisy) { return denoiser->denoise(noisy); }});
-    }
+    std::vector<Candidate> all{noisy_input()};
+    for (const auto& [name, model] : models) all.push_back(through_model(device, name, model));
     all.push_back({"cross-bilateral", [=](const Frame& noisy) { return denoise(device, noisy, baselines.cross_bilateral); }});
     all.push_back({"wavelet", [=](const Frame& noisy) { return denoise(device, noisy, baselines.wavelet); }});
     return all;

@@ -23,6 +23,9 @@ struct Baselines {
     Wavelet wavelet;
 };
 
+Candidate noisy_input(); ///< as it is
+Candidate through_model(const Device& device, const std::string& name, const Model& model);
+
 /// The noisy input as it is, the models (name, network), and both classical denoisers, in this order.
 std::vector<Candidate> candidates(const Device& device, const std::vector<std::pair<std::string, Model>>& models,
                                   const Baselines& baselines);
