@@ -104,7 +104,7 @@ StageEstimate probe_training(const ExperimentSettings& s, const Device& device, 
     };
     run(1); // compiles the kernels
     const double first = run(1);
-    const int steps = std::clamp(static_cast<int>(3 / first), 1, 20);
+    const int steps = std::clamp(static_cast<int>(2 / first), 1, 20);
     StageEstimate e;
     e.name = "training";
     e.steps = training_steps(s);

@@ -26,9 +26,8 @@ PairsFolder read_pairs(const std::string& folder) {
         views = static_cast<int>(plan.at("views").size());
         frames = plan.at("noisy_frames").get<int>();
         reference_spp = plan.at("reference_spp").get<int>();
-        const auto spp = plan.at("spp").get<std::vector<int>>(); // in turn
-        if (spp.empty()) throw Error(ErrorKind::input, "names no samples per pixel", path);
-        for (int k = 0; k < frames; ++k) pairs.spp.push_back(spp[static_cast<std::size_t>(k) % spp.size()]);
+        const auto spp = plan.value("spp", std::vector<int>()); // in turn
+        for (int k = 0; k < frames && !spp.empty(); ++k) pairs.spp.push_back(spp[static_cast<std::size_t>(k) % spp.size()]);
     } catch (const nlohmann::json::exception& e) {
         throw Error(ErrorKind::input, fmt::format("is no pairs.json: {}", e.what()), path);
     }

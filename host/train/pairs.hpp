@@ -13,7 +13,7 @@ struct PairView {
 
 struct PairsFolder {
     std::string split;    ///< "train" or "test"
-    std::vector<int> spp; ///< samples per pixel of each noisy frame of a view
+    std::vector<int> spp; ///< samples per pixel of each noisy frame of a view; empty: pairs.json does not say
     std::vector<PairView> views;
 };
 

@@ -9,12 +9,19 @@
 namespace clvr {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 class TinyExperiment : public ExperimentFolder {};
 
 TEST_F(TinyExperiment, GoesFromNothingToAReportThatShowsTheGain) {
     const std::vector<std::string> words{"experiment", "snake", "--scale", "tiny", "-o", path("e")};
+    std::vector<std::string> planned = words;
+    planned.push_back("--dry-run");
+    const Outcome plan = run(planned);
+    EXPECT_THAT(plan.out, AllOf(HasSubstr("96 x 96 x 75 u8"), HasSubstr("6 + 3 of 96x96"), HasSubstr("600 steps"),
+                                HasSubstr("Estimated from a probe")));
+    EXPECT_FALSE(exists("e"));
     const Outcome o = run(words);
     ASSERT_EQ(o.exit_code, 0) << o.err;
     for (const char* name : {"experiment.json", "volume.nii", "train/pairs.json", "test/view_0002_reference.exr", "model.safetensors",

@@ -98,6 +98,28 @@ TEST(Denoiser, IsLinearInRadianceWhenTheGuidesAreFixed) {
     for (std::size_t i = 0; i < a.pixels(); ++i) ASSERT_EQ(2 * a.at("B")[i], b.at("B")[i]);
 }
 
+TEST(Denoiser, WithoutDemodulationTakesTheRadianceAsItIs) {
+    // Radiance that is constant times a fine albedo: demodulated, every pixel is the constant times its albedo again; else it is blurred.
+    Frame frame = noisy_frame(64, 48);
+    for (std::size_t i = 0; i < frame.pixels(); ++i)
+        for (const char* c : {"R", "G", "B"}) {
+            const float albedo = frame.channel(std::string("albedo.") + c)[i] = (i % 64 / 2 % 2) ? 0.25f : 0.75f;
+            frame.channel(c)[i] = 0.5f * albedo;
+        }
+    for (const char* c : {"A", "opacity.A"}) frame.channel(c).assign(frame.pixels(), 1.0f);
+    Device device = test_device();
+    Model model = test_model();
+    const auto furthest = [&] {
+        const Frame done = Denoiser(device, model).denoise(frame);
+        float most = 0;
+        for (std::size_t i = 0; i < frame.pixels(); ++i) most = std::max(most, std::abs(done.at("G")[i] - frame.at("G")[i]));
+        return most;
+    };
+    EXPECT_LT(furthest(), 1e-6f);
+    model.demodulation = false;
+    EXPECT_GT(furthest(), 0.01f);
+}
+
 TEST(Denoiser, RepairsWhatIsNotFinite) {
     Frame frame = noisy_frame(60, 60);
     frame.channel("R")[30 * 60 + 30] = std::numeric_limits<float>::quiet_NaN();

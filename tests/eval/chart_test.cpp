@@ -24,6 +24,11 @@ TEST(LineChart, OfOneValueAndOfNone) {
     EXPECT_EQ(line_chart("t", "x", {{"s", {std::nan("")}}}), "");
 }
 
+TEST(LineChart, NamesItsPlaces) {
+    const std::string svg = line_chart("t", "x", {{"s", {5, 6, 7}}}, false, {"1 spp", "2 & 3", "8 spp"});
+    EXPECT_THAT(svg, AllOf(HasSubstr(">1 spp<"), HasSubstr(">2 &amp; 3<"), HasSubstr(">8 spp<"), Not(HasSubstr(">3<"))));
+}
+
 TEST(LineChart, Logarithmic) {
     const std::string svg = line_chart("t", "x", {{"s", {0.01, 0.1, 1}}}, true);
     EXPECT_THAT(svg, AllOf(HasSubstr(">0.01<"), HasSubstr(">0.1<"), HasSubstr(",132.0")));

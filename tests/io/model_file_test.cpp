@@ -75,6 +75,16 @@ TEST_F(ModelFile, KeepsEverything) {
     EXPECT_EQ(read_text(path()), read_text(path("again.safetensors")));
 }
 
+TEST_F(ModelFile, DemodulationIsOnUnlessItSaysOtherwise) {
+    Model m = small_model();
+    write_model(m, path());
+    EXPECT_EQ(read_text(path()).find("demodulation"), std::string::npos); // as files of before the switch
+    EXPECT_TRUE(read_model(path()).demodulation);
+    m.demodulation = false;
+    write_model(m, path());
+    EXPECT_FALSE(read_model(path()).demodulation);
+}
+
 /// What Hugging Face's safetensors library reads into PyTorch: 8 bytes of header length, JSON, raw little-endian values in header order.
 TEST_F(ModelFile, IsLaidOutAsTheFormatSays) {
     const Model m = small_model();

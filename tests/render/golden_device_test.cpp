@@ -65,6 +65,24 @@ TEST(Golden, RepeatsWithinOneRendererAndAfterTurning) {
     EXPECT_EQ(pixel_hash(renderer.render()), golden_hashes.at("automatic"));
 }
 
+TEST(Golden, TurnsToOtherFrames) {
+    const Scene scene = golden_scene("automatic");
+    Scene other = scene;
+    other.camera.elevation += 40;
+    other.view = 3;
+    other.seed += 7;
+    other.spp = scene.spp + 2;
+    other.features = false;
+    Renderer renderer({shared_device()}, golden_volume(), other);
+    renderer.render();
+    renderer.turn_to(scene);
+    EXPECT_EQ(pixel_hash(renderer.render()), golden_hashes.at("automatic"));
+    renderer.turn_to(other);
+    const Frame there = renderer.render();
+    EXPECT_FALSE(there.has("albedo.R"));
+    EXPECT_EQ(pixel_hash(there), pixel_hash(Renderer({shared_device()}, golden_volume(), other).render()));
+}
+
 /// Passes of 1, 2, 4 ... samples: a rendering that stops early is the one that asked for no more.
 TEST(Golden, AStoppedRenderingIsTheOneThatAskedForNoMore) {
     const PreparedVolume& volume = golden_volume();

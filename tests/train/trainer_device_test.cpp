@@ -10,6 +10,7 @@
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include <limits>
 
@@ -204,6 +205,9 @@ protected:
         c.cosine = true;
         return c;
     }
+    std::string read_tensors_configuration(const std::string& name) const {
+        return nlohmann::json::parse(read_tensors(path(name)).metadata.at("clvr.checkpoint")).at("configuration");
+    }
     /// Trains until `steps` more steps were reported (0: to the end).
     bool train(const TrainerConfig& c, const std::string& output, bool resume, int stop_after_reports = 0,
                const std::string& validate = {}) {
@@ -228,6 +232,30 @@ TEST_F(TrainerFiles, ResumedTrainingGivesTheSameFile) {
     EXPECT_EQ(read_text(path("whole.training.csv")), read_text(path("cut.training.csv")));
     ASSERT_TRUE(train(config(), "again.safetensors", false));
     EXPECT_EQ(read_text(path("whole.safetensors")), read_text(path("again.safetensors")));
+}
+
+TEST_F(TrainerFiles, EndsAfterItsSteps) {
+    pairs("train"); // 15 patches in batches of 4: 4 steps an epoch
+    TrainerConfig c = config();
+    c.steps = 10;
+    ASSERT_TRUE(train(c, "whole.safetensors", false));
+    EXPECT_EQ(read_checkpoint(path("whole.checkpoint"), read_tensors_configuration("whole.checkpoint")).state.step, 10);
+    const std::string csv = read_text(path("whole.training.csv"));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3); // the third epoch is half a one
+    ASSERT_FALSE(train(c, "cut.safetensors", false, 3));
+    ASSERT_TRUE(train(c, "cut.safetensors", true));
+    EXPECT_EQ(read_text(path("whole.safetensors")), read_text(path("cut.safetensors")));
+    EXPECT_EQ(csv, read_text(path("cut.training.csv")));
+    // A finished one has nothing left to do, and leaves its files again where they were lost.
+    std::filesystem::remove(path("cut.safetensors"));
+    ASSERT_TRUE(train(c, "cut.safetensors", true));
+    EXPECT_EQ(read_text(path("whole.safetensors")), read_text(path("cut.safetensors")));
+    c.steps = 12;
+    EXPECT_THROW(train(c, "cut.safetensors", true), Error); // another training
+    // Steps that are whole epochs are the same as those.
+    ASSERT_TRUE(train(c, "steps.safetensors", false));
+    ASSERT_TRUE(train(config(), "epochs.safetensors", false));
+    EXPECT_EQ(read_text(path("steps.safetensors")), read_text(path("epochs.safetensors")));
 }
 
 TEST_F(TrainerFiles, KeepsTheBestModelAndTheLast) {
