@@ -207,7 +207,9 @@ TEST_F(Experiment, AblationComparesRows) {
     EXPECT_EQ(nlohmann::json::parse(text("a/ablation.json"))["rows"].size(), 5u);
     const auto after = contents("a");
     for (const auto& [name, content] : before)
-        if (name != "ablation.json" && name != "ablation.md" && name != "stages.json") EXPECT_EQ(after.at(name), content) << name;
+        if (name != "ablation.json" && name != "ablation.md" && name != "stages.json") {
+            EXPECT_EQ(after.at(name), content) << name;
+        }
     // A lost measurement is taken again, to the same table; training is not.
     std::filesystem::remove(folder.path() / "a/noise.json");
     const Outcome again = ablation({"--rows", "colour,no-demodulation,opacity,noise"});
