@@ -2,6 +2,7 @@
 #include "host/eval/evaluation_json.hpp"
 #include "host/experiment/stage_times.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/frame_file.hpp"
 #include "host/io/model_file.hpp"
 #include "host/train/pairs.hpp"
 #include "runtime/error.hpp"
@@ -87,6 +88,18 @@ std::string shared_settings(const AblationSettings& s) {
                         {"seed", t.seed}}
                .dump(1) +
            "\n";
+}
+
+/// Before anything is written: whether patches fit into the pictures of each folder (which all have one size).
+void check_patches(const AblationSettings& s) {
+    for (const std::string& folder : s.train) {
+        const Frame first = read_exr(read_pairs(folder).views.front().noisy.front());
+        if (s.training.step.patch > std::min(first.width, first.height))
+            throw Error(ErrorKind::usage,
+                        fmt::format("is {}; the pictures of {} have {}x{} pixels, which is the most", s.training.step.patch, folder,
+                                    first.width, first.height),
+                        "--patch");
+    }
 }
 
 void begin_folder(const std::string& settings, const std::string& folder) {
@@ -187,6 +200,7 @@ std::vector<AblationResult> run_ablation(const AblationSettings& s, const std::s
     const std::vector<AblationRow> rows = chosen(s.rows);
     const std::string settings = shared_settings(s);
     const std::vector<Test> tests = tests_of(s);
+    check_patches(s);
     begin_folder(settings, folder);
     const auto path = [&](const std::string& name) { return (fs::path(folder) / name).string(); };
     StageTimes times(path("stages.json"));

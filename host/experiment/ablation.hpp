@@ -50,8 +50,9 @@ std::string markdown_tables(const std::vector<AblationResult>& results);
 
 /// Trains and measures each row, after the noisy input; a row is kept in the folder as NAME.safetensors (and what `clvr train` leaves
 /// beside) and NAME.json, and not done again. settings.json has what all rows share, ablation.json and ablation.md the table. The models
-/// are the same bits however often this was interrupted. Throws Error{usage}: an unknown row; Error{input}: folders that are missing, not
-/// complete, without such noisy frames or references, a folder of another ablation; Error{interrupted}.
+/// are the same bits however often this was interrupted. Throws Error{usage}: an unknown row, patches larger than the pictures;
+/// Error{input}: folders that are missing, not complete, without such noisy frames or references, a folder of another ablation;
+/// Error{interrupted}.
 std::vector<AblationResult> run_ablation(const AblationSettings& settings, const std::string& folder, const Device& device,
                                          const Provenance& provenance, const ExperimentControl& control);
 

@@ -186,6 +186,9 @@ Voxels experiment_volume(const ExperimentSettings& s, const std::string& folder,
 ExperimentOutcome run_experiment(const ExperimentSettings& settings, const std::string& folder, std::vector<Device> devices,
                                  const Provenance& provenance, const ExperimentControl& control) {
     validate(settings);
+    // Before anything is written; later on, the pairs may have made it unnecessary.
+    if (settings.computed.empty() && !fs::exists(volume_path(settings, folder)) && !fs::exists(fs::path(folder) / "experiment.json"))
+        throw Error(ErrorKind::input, "there is no such file or folder", volume_path(settings, folder));
     begin_folder(to_json(settings), folder);
     return Run(settings, folder, devices, provenance, control)();
 }
