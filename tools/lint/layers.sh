@@ -26,6 +26,7 @@ only host/train runtime/ host/frame/ host/denoise/ host/io/ host/train/ kernels/
 only host/eval runtime/ host/frame/ host/denoise/ host/io/ host/train/ host/eval/
 only host/dataset runtime/ host/dataset/
 only host/experiment runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/io/ host/train/ host/eval/ host/dataset/ host/experiment/
+only host/selftest runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/train/ host/selftest/ kernels/shared/
 only host/cli runtime/ host/ kernels/shared/
 only kernels/shared shared/
 only kernels/lib shared/ lib/
@@ -33,6 +34,7 @@ only kernels/render shared/ lib/
 only kernels/volume shared/ lib/
 only kernels/denoise shared/ lib/
 only kernels/train shared/ lib/
+only kernels/selftest shared/ lib/
 only kernels/probe shared/ lib/ trust_operations.h
 
 nowhere_but 'runtime/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'
