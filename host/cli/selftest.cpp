@@ -10,9 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -106,7 +109,10 @@ void selftest_command(const Options& o) {
     std::fflush(nullptr);
     const pid_t child = fork();
     if (child < 0) throw Error(ErrorKind::memory, "no child process can be started");
-    if (child == 0) return test_devices(o, wanted, running);
+    if (child == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGTERM); // ends with this process
+        return test_devices(o, wanted, running);
+    }
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
