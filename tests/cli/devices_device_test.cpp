@@ -1,13 +1,9 @@
 // `clvr devices` and what every subcommand shares: exit codes, unusual machines, the caches.
 #include "runtime/program_cache.hpp"
-#include "tests/cli/program.hpp"
-#include "tests/runtime/scoped.hpp"
+#include "tests/cli/home.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
 
 namespace clvr {
 namespace {
@@ -15,43 +11,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr const char* oclgrind = "/usr/lib/oclgrind/liboclgrind-rt-icd.so";
-
-/// Where PoCL keeps kernels for this user, so that programs with another home need not compile them again.
-std::string pocl_cache() {
-    const auto variable = [](const char* name) { return std::string(std::getenv(name) ? std::getenv(name) : ""); };
-    if (!variable("POCL_CACHE_DIR").empty()) return variable("POCL_CACHE_DIR");
-    return (variable("XDG_CACHE_HOME").empty() ? variable("HOME") + "/.cache" : variable("XDG_CACHE_HOME")) + "/pocl/kcache";
-}
-
-/// Runs programs with a home of their own.
-class Program : public testing::Test {
-protected:
-    TemporaryFolder home;
-
-    Child start(const std::vector<std::string>& arguments, Environment environment = {}) const {
-        const Environment usual{{"HOME", home.path().string()},
-                                {"XDG_CACHE_HOME", std::nullopt},
-                                {"XDG_CONFIG_HOME", std::nullopt},
-                                {"CLVR_DEVICE", std::nullopt},
-                                {"POCL_CACHE_DIR", pocl_cache()}};
-        environment.insert(usual.begin(), usual.end());
-        return {arguments, environment, home.path()};
-    }
-    Outcome run(const std::vector<std::string>& arguments, const Environment& environment = {}) const {
-        return start(arguments, environment).wait();
-    }
-
-    std::vector<std::filesystem::path> files(const std::string& folder) const {
-        std::vector<std::filesystem::path> result;
-        std::error_code none;
-        for (const auto& entry : std::filesystem::directory_iterator(home.path() / folder, none)) result.push_back(entry.path());
-        return result;
-    }
-};
-
-std::ptrdiff_t line_count(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 TEST_F(Program, UsageErrorsAreOneLineAndExitCode2) {
     for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
