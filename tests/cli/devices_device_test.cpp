@@ -75,7 +75,60 @@ TEST_F(Program, NoPlatform) {
 TEST_F(Program, LibraryThatIsNoDriver) {
     const Outcome outcome = run({"devices"}, {{"OCL_ICD_VENDORS", "/usr/lib/x86_64-linux-gnu/libz.so.1"}});
     EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
-    EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
+    EXPECT_EQ(line_count(outcome.err), 2) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(testing::StartsWith("clvr: warning: "), HasSubstr("libz.so.1 is no OpenCL driver")));
+    EXPECT_THAT(run({"render", ball(), "-o", "x.png"}, {{"OCL_ICD_VENDORS", "/usr/lib/x86_64-linux-gnu/libz.so.1"}}).err,
+                HasSubstr("no OpenCL platform on this machine (/usr/lib/x86_64-linux-gnu/libz.so.1 is no OpenCL driver)"));
+}
+
+/// The loader skips it in silence and shows the others.
+TEST_F(Program, DriverThatCannotBeLoadedIsNamed) {
+    home.write("drivers/gone.icd", "libnone-such.so.1\n");
+    home.write("drivers/empty.icd", "\n");
+    home.write("drivers/pocl.icd", "libpocl.so.2\n");
+    const Outcome outcome = run({"devices", "--json"}, {{"OCL_ICD_VENDORS", (home.path() / "drivers").string()}});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(nlohmann::json::parse(outcome.out)["platforms"].size(), 1u);
+    EXPECT_EQ(line_count(outcome.err), 2) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("empty.icd names no library"), HasSubstr("libnone-such.so.1, which "),
+                                   HasSubstr("gone.icd names, cannot be loaded")));
+}
+
+TEST_F(Program, NonsenseInTheEnvironmentIsNamed) {
+    EXPECT_EQ(run({"devices"}, {{"CLVR_DEVICE", "none such"}}).exit_code, 4);
+    EXPECT_THAT(run({"devices"}, {{"CLVR_DEVICE", "none such"}}).err,
+                AllOf(testing::StartsWith("clvr: CLVR_DEVICE: "), HasSubstr("there are 0 \"")));
+    EXPECT_EQ(run({"devices"}, {{"CLVR_DEVICE", "0+"}}).exit_code, 2);
+}
+
+TEST_F(Program, KernelThatDoesNotBuildIsShownWithTheCompilersLog) {
+    home.write("kernels/render/march.cl", "// one\nint wrong = undeclared_name;\n");
+    const Outcome outcome = run({"render", ball(), "--size", "8x8", "--spp", "1", "--mode", "dvr", "-o", (home.path() / "x.png").string()},
+                                {{"CLVR_KERNEL_DIR", (home.path() / "kernels").string()}});
+    EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("render/march.cl:2:"), HasSubstr("undeclared_name")));
+    EXPECT_FALSE(std::filesystem::exists(home.path() / "x.png"));
+}
+
+/// In the middle: the volume is on the device already when the paths want memory.
+TEST_F(Program, OutOfDeviceMemoryIsOneLineAndLeavesNoFile) {
+    const Outcome outcome =
+        run({"render", ball(), "--size", "512x512", "--spp", "1", "-o", (home.path() / "x.png").string()}, {{"CLVR_MAX_MEMORY", "3M"}});
+    EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(" wants "), HasSubstr("--memory")));
+    EXPECT_FALSE(std::filesystem::exists(home.path() / "x.png"));
+}
+
+/// A cache whose every file is nonsense gives what an empty one gives.
+TEST_F(Program, CorruptCachesAreMadeAnew) {
+    ASSERT_EQ(run({"devices"}).exit_code, 0);
+    std::size_t files_seen = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(home.path() / ".cache/clvr"))
+        if (entry.is_regular_file()) std::ofstream(entry.path()) << "{\"nonsense\": ", ++files_seen;
+    ASSERT_GE(files_seen, 1u);
+    const Outcome outcome = run({"devices"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("  ok"));
 }
 
 TEST_F(Program, PlatformWithoutDevices) {

@@ -37,6 +37,17 @@ protected:
         return start(arguments, environment).wait();
     }
 
+    /// A volume of 16x16x16 bytes.
+    std::string ball() const {
+        std::string voxels(16 * 16 * 16, '\0');
+        for (int i = 0; i < 16 * 16 * 16; ++i) {
+            const int x = i % 16 - 8, y = i / 16 % 16 - 8, z = i / 256 - 8;
+            voxels[static_cast<std::size_t>(i)] = static_cast<char>(std::max(0, 120 - 2 * (x * x + y * y + z * z)));
+        }
+        home.write("ball_16x16x16_uint8.raw", voxels);
+        return (home.path() / "ball_16x16x16_uint8.raw").string();
+    }
+
     std::vector<std::filesystem::path> files(const std::string& folder) const {
         std::vector<std::filesystem::path> result;
         std::error_code none;

@@ -60,7 +60,7 @@ TEST_F(Selftest, NamesTheCheckThatFails) {
 /// Everything else refuses such a device.
 TEST_F(Selftest, TestsADeviceThatTheTrustProbeRefuses) {
     const auto faulty = with_kernel("shared/trust_operations.h", "a / b", "a * (1.0f / b)");
-    EXPECT_EQ(run({"render", "demo:foam", "--size", "8x8", "--spp", "1", "-o", (home.path() / "x.png").string()}, faulty).exit_code, 4);
+    EXPECT_EQ(run({"render", ball(), "--size", "8x8", "--spp", "1", "-o", (home.path() / "x.png").string()}, faulty).exit_code, 4);
     const Outcome outcome = run({"selftest", "--check", "trust,layout"}, faulty);
     EXPECT_EQ(outcome.exit_code, 4);
     EXPECT_THAT(outcome.out, testing::ContainsRegex("  trust  .* FAILED expected ok; found fails divide \\(.*\n  layout  .* ok "));

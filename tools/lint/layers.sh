@@ -41,5 +41,6 @@ nowhere_but 'runtime/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'
 nowhere_but 'host/io/[a-z_]*\.cpp' '#\s*include\s*[<"](itk|ImfF?|png\.h|stb_|zlib\.h)'
 nowhere_but 'host/dataset/download\.cpp' '#\s*include\s*<curl'
 nowhere_but 'host/train/matrix_layers\.cpp' '#\s*include\s*<clblast'
+complain "clocks that jump have no place in the product: use steady_clock" "$(grep -rnE 'system_clock|high_resolution_clock|gettimeofday' runtime host || true)"
 complain "the runtime knows no volume, no image, no network" "$(grep -rniE 'volume|brick|voxel|guide|denoise' runtime || true)"
 exit $status
