@@ -78,7 +78,7 @@ const Fault faults[] = {
      "return fma(t, b - a, a);",
      "return fma(t * 0.999f, b - a, a);",
      {"seams", "picture", "frame-mip", "frame-dvr", "frame-phase", "frame-automatic", "frame-gradient"}},
-    {"cells", "lib/volume.clh", "cell.z * p->cells.y", "cell.z * p->cells.x", {"majorants"}},
+    {"cells", "lib/volume.clh", "+ cell.y) * p->cells.x", "+ (cell.y ^ 1)) * p->cells.x", {"majorants"}},
     {"march", "render/march.cl", "-vol->p->extinction * step", "-vol->p->extinction * step * 0.999f", {"slab"}},
     {"albedo",
      "render/shade.cl",
