@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
     clvr::add_dataset_command(app);
     clvr::add_experiment_command(app);
     clvr::add_ablation_command(app);
+    clvr::add_selftest_command(app);
     try {
         app.parse(argc, argv);
         if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");

@@ -3,6 +3,7 @@
 #include "runtime/account.hpp"
 #include "runtime/check.hpp"
 #include "runtime/program.hpp"
+#include "runtime/quirks.hpp"
 #include "runtime/size.hpp"
 #include "runtime/trust.hpp"
 
@@ -74,7 +75,7 @@ struct Device::State {
                 return std::pair(first.event.getProfilingInfo<CL_PROFILING_COMMAND_START>(),
                                  first.event.getProfilingInfo<CL_PROFILING_COMMAND_END>());
             });
-            profile.add(first.label, end > start ? static_cast<double>(end - start) * 1e-6 : 0, first.work.bytes, first.work.flops);
+            profile.add(first.label, quirks::milliseconds_though_stamps_run_backwards(start, end), first.work.bytes, first.work.flops);
             pending.pop_front();
         }
     }

@@ -45,6 +45,7 @@ cl::Program from_source(const cl::Context& context, const DeviceFacts& facts, co
 std::string build_options(const DeviceFacts& facts, const std::map<std::string, std::string>& defines) {
     std::string options = "-cl-std=CL1.2";
     if (facts.claims_correct_divide_sqrt) options += " -cl-fp32-correctly-rounded-divide-sqrt";
+    if (quirks::oclgrind_knows_no_noalias_scopes(facts.platform)) options += " -fno-inline";
     for (const auto& [name, value] : defines) {
         if (name.empty() || (name + value).find_first_of(" \t\n\"'\\") != std::string::npos)
             throw Error(ErrorKind::internal, fmt::format("the definition {}={} cannot be passed to an OpenCL compiler", name, value));

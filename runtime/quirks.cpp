@@ -47,6 +47,12 @@ bool pocl_aborts_on_broken_binaries(const std::string& platform) {
     return platform.find("Portable Computing Language") != std::string::npos;
 }
 
+double milliseconds_though_stamps_run_backwards(std::uint64_t start_ns, std::uint64_t end_ns) {
+    return end_ns > start_ns ? static_cast<double>(end_ns - start_ns) * 1e-6 : 0;
+}
+
+bool oclgrind_knows_no_noalias_scopes(const std::string& platform) { return platform.find("Oclgrind") != std::string::npos; }
+
 bool oclgrind_claims_every_device_type(const std::string& platform) { return platform.find("Oclgrind") != std::string::npos; }
 
 bool oclgrind_ignores_line_directives(const std::string& platform) { return platform.find("Oclgrind") != std::string::npos; }

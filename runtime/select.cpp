@@ -1,6 +1,7 @@
 #include "runtime/select.hpp"
 
 #include "runtime/error.hpp"
+#include "runtime/icd.hpp"
 #include "runtime/speed.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,12 @@ std::vector<DeviceFacts> flat(const std::vector<PlatformFacts>& platforms) {
 }
 
 void require_devices(const std::vector<PlatformFacts>& platforms) {
-    if (platforms.empty()) throw Error(ErrorKind::device, fmt::format("there is no OpenCL platform on this machine; {}", advice));
+    if (platforms.empty()) {
+        std::string skipped;
+        for (const std::string& driver : unloadable_drivers()) skipped += fmt::format("{}{}", skipped.empty() ? " (" : "; ", driver);
+        throw Error(ErrorKind::device,
+                    fmt::format("there is no OpenCL platform on this machine{}{}; {}", skipped, skipped.empty() ? "" : ")", advice));
+    }
     std::string names;
     for (const PlatformFacts& platform : platforms) {
         if (!platform.devices.empty()) return;

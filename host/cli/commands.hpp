@@ -16,5 +16,6 @@ void add_eval_command(CLI::App& app);       // eval.cpp
 void add_dataset_command(CLI::App& app);    // dataset.cpp
 void add_ablation_command(CLI::App& app);   // ablation.cpp
 void add_experiment_command(CLI::App& app); // experiment.cpp
+void add_selftest_command(CLI::App& app);   // selftest.cpp
 
 } // namespace clvr

@@ -2,12 +2,14 @@
 #include "host/cli/commands.hpp"
 
 #include "runtime/error.hpp"
+#include "runtime/icd.hpp"
 #include "runtime/select.hpp"
 #include "runtime/size.hpp"
 #include "runtime/trust.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <iterator>
@@ -142,6 +144,7 @@ struct Options {
 };
 
 void devices_command(const Options& options) {
+    for (const std::string& driver : unloadable_drivers()) spdlog::warn("an OpenCL driver is missing: {}", driver);
     const Report report = make_report(options.selector);
     if (options.json)
         print_json(report);

@@ -156,6 +156,7 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
     splatted_ = device_.buffer(pixels() * 16, "colours to splat");
     remodulation_ = device_.buffer(pixels() * 16, "albedo");
     cells_ = device_.buffer(std::size_t{16} * (params_.cells * shape.images + 1), "bilateral grids") /* slicing reads cells in pairs */;
+    device_.fill(cells_, 0); // the last pair's second cell has the weight 0, but is read: no NaN may lie there
 }
 
 int NeuralGrid::pixel_width(const Device& device) { return conv_width(device); }

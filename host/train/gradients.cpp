@@ -75,6 +75,7 @@ Gradients::Gradients(const Device& device, const Model& model, Loss loss, const 
     hidden_gradient_ = planes(hidden_, "gradient of the hidden layer");
     upstream_ = device_.buffer(16 * forward.pixels() * static_cast<std::size_t>(levels_), "gradient of the levels");
     cell_gradient_ = device_.buffer(forward.cells().bytes(), "gradient of the grids");
+    device_.fill(cell_gradient_, 0); // as the cells: read in pairs
     lanes_ = device_.buffer(images * parameters_ * lanes * 4, "gradients by lane");
     device_.fill(lanes_, 0); // matrices leave those of the weights alone
     loss_lanes_ = device_.buffer(images * static_cast<std::size_t>(p.height) * lanes * 4, "losses by lane");

@@ -1,13 +1,9 @@
 // `clvr devices` and what every subcommand shares: exit codes, unusual machines, the caches.
 #include "runtime/program_cache.hpp"
-#include "tests/cli/program.hpp"
-#include "tests/runtime/scoped.hpp"
+#include "tests/cli/home.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include <algorithm>
 
 namespace clvr {
 namespace {
@@ -15,43 +11,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr const char* oclgrind = "/usr/lib/oclgrind/liboclgrind-rt-icd.so";
-
-/// Where PoCL keeps kernels for this user, so that programs with another home need not compile them again.
-std::string pocl_cache() {
-    const auto variable = [](const char* name) { return std::string(std::getenv(name) ? std::getenv(name) : ""); };
-    if (!variable("POCL_CACHE_DIR").empty()) return variable("POCL_CACHE_DIR");
-    return (variable("XDG_CACHE_HOME").empty() ? variable("HOME") + "/.cache" : variable("XDG_CACHE_HOME")) + "/pocl/kcache";
-}
-
-/// Runs programs with a home of their own.
-class Program : public testing::Test {
-protected:
-    TemporaryFolder home;
-
-    Child start(const std::vector<std::string>& arguments, Environment environment = {}) const {
-        const Environment usual{{"HOME", home.path().string()},
-                                {"XDG_CACHE_HOME", std::nullopt},
-                                {"XDG_CONFIG_HOME", std::nullopt},
-                                {"CLVR_DEVICE", std::nullopt},
-                                {"POCL_CACHE_DIR", pocl_cache()}};
-        environment.insert(usual.begin(), usual.end());
-        return {arguments, environment, home.path()};
-    }
-    Outcome run(const std::vector<std::string>& arguments, const Environment& environment = {}) const {
-        return start(arguments, environment).wait();
-    }
-
-    std::vector<std::filesystem::path> files(const std::string& folder) const {
-        std::vector<std::filesystem::path> result;
-        std::error_code none;
-        for (const auto& entry : std::filesystem::directory_iterator(home.path() / folder, none)) result.push_back(entry.path());
-        return result;
-    }
-};
-
-std::ptrdiff_t line_count(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }
 
 TEST_F(Program, UsageErrorsAreOneLineAndExitCode2) {
     for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
@@ -116,7 +75,60 @@ TEST_F(Program, NoPlatform) {
 TEST_F(Program, LibraryThatIsNoDriver) {
     const Outcome outcome = run({"devices"}, {{"OCL_ICD_VENDORS", "/usr/lib/x86_64-linux-gnu/libz.so.1"}});
     EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
-    EXPECT_EQ(line_count(outcome.err), 1) << outcome.err;
+    EXPECT_EQ(line_count(outcome.err), 2) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(testing::StartsWith("clvr: warning: "), HasSubstr("libz.so.1 is no OpenCL driver")));
+    EXPECT_THAT(run({"render", ball(), "-o", "x.png"}, {{"OCL_ICD_VENDORS", "/usr/lib/x86_64-linux-gnu/libz.so.1"}}).err,
+                HasSubstr("no OpenCL platform on this machine (/usr/lib/x86_64-linux-gnu/libz.so.1 is no OpenCL driver)"));
+}
+
+/// The loader skips it in silence and shows the others.
+TEST_F(Program, DriverThatCannotBeLoadedIsNamed) {
+    home.write("drivers/gone.icd", "libnone-such.so.1\n");
+    home.write("drivers/empty.icd", "\n");
+    home.write("drivers/pocl.icd", "libpocl.so.2\n");
+    const Outcome outcome = run({"devices", "--json"}, {{"OCL_ICD_VENDORS", (home.path() / "drivers").string()}});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(nlohmann::json::parse(outcome.out)["platforms"].size(), 1u);
+    EXPECT_EQ(line_count(outcome.err), 2) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("empty.icd names no library"), HasSubstr("libnone-such.so.1, which "),
+                                   HasSubstr("gone.icd names, cannot be loaded")));
+}
+
+TEST_F(Program, NonsenseInTheEnvironmentIsNamed) {
+    EXPECT_EQ(run({"devices"}, {{"CLVR_DEVICE", "none such"}}).exit_code, 4);
+    EXPECT_THAT(run({"devices"}, {{"CLVR_DEVICE", "none such"}}).err,
+                AllOf(testing::StartsWith("clvr: CLVR_DEVICE: "), HasSubstr("there are 0 \"")));
+    EXPECT_EQ(run({"devices"}, {{"CLVR_DEVICE", "0+"}}).exit_code, 2);
+}
+
+TEST_F(Program, KernelThatDoesNotBuildIsShownWithTheCompilersLog) {
+    home.write("kernels/render/march.cl", "// one\nint wrong = undeclared_name;\n");
+    const Outcome outcome = run({"render", ball(), "--size", "8x8", "--spp", "1", "--mode", "dvr", "-o", (home.path() / "x.png").string()},
+                                {{"CLVR_KERNEL_DIR", (home.path() / "kernels").string()}});
+    EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("render/march.cl:2:"), HasSubstr("undeclared_name")));
+    EXPECT_FALSE(std::filesystem::exists(home.path() / "x.png"));
+}
+
+/// In the middle: the volume is on the device already when the paths want memory.
+TEST_F(Program, OutOfDeviceMemoryIsOneLineAndLeavesNoFile) {
+    const Outcome outcome =
+        run({"render", ball(), "--size", "512x512", "--spp", "1", "-o", (home.path() / "x.png").string()}, {{"CLVR_MAX_MEMORY", "3M"}});
+    EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr(" wants "), HasSubstr("--memory")));
+    EXPECT_FALSE(std::filesystem::exists(home.path() / "x.png"));
+}
+
+/// A cache whose every file is nonsense gives what an empty one gives.
+TEST_F(Program, CorruptCachesAreMadeAnew) {
+    ASSERT_EQ(run({"devices"}).exit_code, 0);
+    std::size_t files_seen = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(home.path() / ".cache/clvr"))
+        if (entry.is_regular_file()) std::ofstream(entry.path()) << "{\"nonsense\": ", ++files_seen;
+    ASSERT_GE(files_seen, 1u);
+    const Outcome outcome = run({"devices"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.out, HasSubstr("  ok"));
 }
 
 TEST_F(Program, PlatformWithoutDevices) {

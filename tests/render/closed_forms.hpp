@@ -5,25 +5,6 @@
 
 namespace clvr::testing {
 
-/// A smooth blob of white matter; 1/mm where it is densest.
-inline Scene furnace_scene(Shading shading, double g, int spp) {
-    Scene s = plain_scene(24, spp);
-    s.shading = shading;
-    s.phase_g = g;
-    s.bounces = 0;
-    s.extinction = 1;
-    s.transfer->points[0].opacity = 0;
-    s.background.kind = Background::Kind::environment;
-    return s;
-}
-
-inline Voxels blob(int side) {
-    return volume_of<std::uint8_t>({side, side, side}, [&](int x, int y, int z) {
-        const double dx = x - 0.5 * side, dy = y - 0.4 * side, dz = z - 0.45 * side;
-        return 255 * std::exp(-12 * (dx * dx + dy * dy + dz * dz) / (side * side));
-    });
-}
-
 /// A white furnace: whatever scatters, the picture is 1 everywhere.
 inline void expect_furnace(const Voxels& v, const Scene& s, const EnvironmentTables& environment = {}) {
     const Frame f = render(v, s, environment);

@@ -1,5 +1,4 @@
 // The elementary functions of kernels/lib/math.clh against the C library in double, and the same bits at every packet width.
-#include "tests/render/kernel_under_test.hpp"
 #include "tests/render/scenes.hpp"
 
 namespace clvr::testing {
@@ -15,7 +14,7 @@ struct Values {
 
 /// b as long as a, a multiple of 16.
 Values evaluate(Device& device, int width, Function function, const Floats& a, const Floats& b) {
-    Kernel kernel = test_kernel(device, "math_values", {{"CLVR_WIDTH", std::to_string(width)}});
+    Kernel kernel = device.kernel("selftest/math_values", {{"CLVR_WIDTH", std::to_string(width)}});
     const Buffer in_a = device.upload(a, "a"), in_b = device.upload(b, "b");
     const Buffer first = device.buffer(4 * a.size(), "first"), second = device.buffer(4 * a.size(), "second");
     const auto packets = static_cast<std::uint32_t>(a.size() / width);

@@ -1,6 +1,6 @@
 // The random numbers: Philox against published vectors and a plain implementation, at every packet width; their conversion to floats.
+#include "host/selftest/golden_values.hpp"
 #include "tests/reference/random.hpp"
-#include "tests/render/kernel_under_test.hpp"
 #include "tests/render/scenes.hpp"
 
 #include <random>
@@ -11,18 +11,6 @@ namespace {
 using Block = std::array<std::uint32_t, 4>;
 using Key = std::array<std::uint32_t, 2>;
 
-struct Known {
-    Block counter;
-    Key key;
-    Block block;
-};
-// Random123's examples/kat_vectors, philox4x32 with 10 rounds.
-const Known published[] = {
-    {{0, 0, 0, 0}, {0, 0}, {0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}},
-    {{~0u, ~0u, ~0u, ~0u}, {~0u, ~0u}, {0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}},
-    {{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}, {0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}},
-};
-
 struct Blocks {
     std::vector<Block> block;
     std::vector<float> number; ///< v_uniform of each block's first word
@@ -30,7 +18,7 @@ struct Blocks {
 
 /// The blocks of a multiple of 16 counters.
 Blocks device_blocks(Device& device, int width, const std::vector<Block>& counters, const Key& key) {
-    Kernel kernel = test_kernel(device, "random_blocks", {{"CLVR_WIDTH", std::to_string(width)}});
+    Kernel kernel = device.kernel("selftest/random_blocks", {{"CLVR_WIDTH", std::to_string(width)}});
     const std::size_t n = counters.size();
     std::vector<Buffer> in, out;
     for (int k = 0; k < 4; ++k) {
@@ -52,7 +40,7 @@ Blocks device_blocks(Device& device, int width, const std::vector<Block>& counte
 
 TEST(Philox, GivesThePublishedVectors) {
     Device device = shared_device();
-    for (const Known& known : published) {
+    for (const KnownRandom& known : published_random) {
         EXPECT_EQ(reference::philox(known.counter, known.key), known.block);
         for (int width : {1, 4, 8, 16})
             for (const Block& b : device_blocks(device, width, std::vector<Block>(16, known.counter), known.key).block)

@@ -1,7 +1,6 @@
 // What kernels read from a bricked volume: interpolation, gradient, classification against the reference, the same bits for every brick
 // edge, pool count and packet width, no seams.
 #include "tests/reference/volume.hpp"
-#include "tests/render/kernel_under_test.hpp"
 #include "tests/render/scenes.hpp"
 #include "tests/render/statistics.hpp"
 #include "tests/volume/random_volume.hpp"
@@ -9,13 +8,13 @@
 namespace clvr::testing {
 namespace {
 
-/// Planes of kernels/volume_values.cl at index positions, their number a multiple of 16.
+/// Planes of kernels/selftest/volume_values.cl at index positions, their number a multiple of 16.
 using Planes = std::vector<float>;
 
 Planes values_at(Device& device, const DeviceVolume& volume, int width, const std::vector<Double3>& positions) {
     Defines defines = volume.defines();
     defines["CLVR_WIDTH"] = std::to_string(width);
-    Kernel kernel = test_kernel(device, "volume_values", defines);
+    Kernel kernel = device.kernel("selftest/volume_values", defines);
     const std::size_t n = positions.size();
     std::vector<float> in(3 * n);
     for (std::size_t i = 0; i < n; ++i)

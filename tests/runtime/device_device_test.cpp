@@ -129,6 +129,15 @@ TEST(Device, RefusesBeforeAllocating) {
     EXPECT_EQ(error_of([&] { device.buffer(1, "d"); }).kind(), ErrorKind::memory);
 }
 
+TEST(Device, WithoutACompilerIsRefusedByName) {
+    DeviceFacts facts = chosen();
+    facts.has_compiler = false;
+    const Error error = error_of([&] { Device::open(facts); });
+    EXPECT_EQ(error.kind(), ErrorKind::device);
+    EXPECT_EQ(error.where(), facts.name);
+    EXPECT_THAT(error.what(), testing::HasSubstr("no OpenCL compiler"));
+}
+
 TEST(Device, WrongLimitIsAUsageError) {
     const ScopedVariable alloc("CLVR_MAX_ALLOC", "lots");
     EXPECT_EQ(error_of([] { Device::open(chosen()); }).line().rfind("CLVR_MAX_ALLOC: ", 0), 0u);

@@ -26,6 +26,7 @@ only host/train runtime/ host/frame/ host/denoise/ host/io/ host/train/ kernels/
 only host/eval runtime/ host/frame/ host/denoise/ host/io/ host/train/ host/eval/
 only host/dataset runtime/ host/dataset/
 only host/experiment runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/io/ host/train/ host/eval/ host/dataset/ host/experiment/
+only host/selftest runtime/ host/volume/ host/frame/ host/render/ host/denoise/ host/train/ host/selftest/ kernels/shared/
 only host/cli runtime/ host/ kernels/shared/
 only kernels/shared shared/
 only kernels/lib shared/ lib/
@@ -33,11 +34,13 @@ only kernels/render shared/ lib/
 only kernels/volume shared/ lib/
 only kernels/denoise shared/ lib/
 only kernels/train shared/ lib/
+only kernels/selftest shared/ lib/
 only kernels/probe shared/ lib/ trust_operations.h
 
 nowhere_but 'runtime/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'
 nowhere_but 'host/io/[a-z_]*\.cpp' '#\s*include\s*[<"](itk|ImfF?|png\.h|stb_|zlib\.h)'
 nowhere_but 'host/dataset/download\.cpp' '#\s*include\s*<curl'
 nowhere_but 'host/train/matrix_layers\.cpp' '#\s*include\s*<clblast'
+complain "clocks that jump have no place in the product: use steady_clock" "$(grep -rnE 'system_clock|high_resolution_clock|gettimeofday' runtime host || true)"
 complain "the runtime knows no volume, no image, no network" "$(grep -rniE 'volume|brick|voxel|guide|denoise' runtime || true)"
 exit $status

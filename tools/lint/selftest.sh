@@ -60,6 +60,7 @@ for case in 'runtime/a.cpp host/volume/voxels.hpp' 'host/volume/a.cpp host/frame
 done
 expect refuses layers host/cli/a.cpp 'only in runtime' <<<'#include <CL/opencl.hpp>'
 expect refuses layers host/cli/a.cpp 'only in host/io' <<<'#include <itkImageFileReader.h>'
+expect refuses layers host/cli/a.cpp 'steady_clock' <<<'auto now = std::chrono::system_clock::now();'
 expect refuses layers runtime/a.cpp 'knows no volume' <<<'// for every Voxel'
 
 [ "$failures" == 0 ] && echo "every lint refuses what it should"

@@ -1,4 +1,4 @@
-// Every elementary function of lib/math.clh at given arguments. One work-item a packet.
+// For the self-test and tests: every elementary function of lib/math.clh at given arguments. One work-item a packet.
 #include "lib/math.clh"
 
 // function: 0 v_log(a), 1 v_exp(a), 2 v_sincos_turns(a) (cosine in second), 3 v_atan2_turns(a, b), 4 v_acos_half_turns(a).

@@ -1,0 +1,52 @@
+// The golden values: what every conforming device gives, in bits. The self-test, the tests and the conformance runs all read them here. A
+// change means that pictures change: made on purpose only, together with DESIGN.md or a default. To make them anew, run `clvr selftest` and
+// copy what it found.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace clvr::selftest {
+
+/// pixel_hash of each golden scene (golden_scene), the denoised one's of golden_denoised, the rendered and denoised one's of
+/// golden_picture.
+inline const std::map<std::string, std::string> golden_hashes{
+    {"automatic", "1b6fe8327194affacfc7ad8f24bd9c827568424669319adbab1e6bc46399ae94"},
+    {"dvr", "730d603450250592a3f7daa30de636b007d3528b75bfd6bc12bc9d7994a90db5"},
+    {"gradient", "a0f807e28d0b4f21e1134d3e289bfaec4d6d41fa4fdf382cf8067b65bfb8bdad"},
+    {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
+    {"phase", "f91c27fa627945a7fa2b32b5fe4a50e2ce13e53fb2b855d0b5b967422bd8d17d"},
+};
+inline const std::string golden_denoised_hash = "51fbc953929530f059a9910243ddc7e03529ad73d10cef64f2ca912460bbe06a";
+inline const std::string golden_picture_hash = "59015e21d81622232ac6b683610fedf326d1b82c7eb1ecb3414eaa7ea1f5e6a7";
+
+/// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
+inline const std::array<std::pair<const char*, const char*>, 5> golden_functions{{
+    {"log", "892b8bb4c963141f9fafb6ee106e7baa0698e2a03e1d8b0b777856aed0827405"},
+    {"exp", "8f99d4a83cbeadf884cc6fbd8e81209911e27bf48aee2b9a68eeb7e8fbf7ac4b"},
+    {"sincos", "113bfcc8d9e3b48e0ed4ca2af5e8397c02041fade9232e71bd59d9edcb3edfb7"},
+    {"atan2", "4068bb3f0a6ed28a310238eb3688fccd569dde8dd9815fbae8835648edba3545"},
+    {"acos", "22dd58cc7708a13fe0438cb2f1fc50cce0564f3144a1cffbfbec5171cde920a5"},
+}};
+
+/// Stops of the rays of the majorant check.
+constexpr int golden_stops = 23321;
+
+/// Mean loss of the first and the last step of the tiny training; those of another device may differ by this share (the sums of training
+/// are ordered, too, but only rendering and denoising promise their bits).
+constexpr double golden_first_loss = 0.166048, golden_last_loss = 0.085030, golden_loss_tolerance = 1e-3;
+
+/// Philox4x32 with 10 rounds: Random123's examples/kat_vectors.
+struct KnownRandom {
+    std::array<std::uint32_t, 4> counter;
+    std::array<std::uint32_t, 2> key;
+    std::array<std::uint32_t, 4> block;
+};
+inline constexpr KnownRandom published_random[] = {
+    {{0, 0, 0, 0}, {0, 0}, {0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}},
+    {{~0u, ~0u, ~0u, ~0u}, {~0u, ~0u}, {0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}},
+    {{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}, {0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}},
+};
+
+} // namespace clvr::selftest

@@ -1,0 +1,59 @@
+#include "runtime/icd.hpp"
+
+#include "runtime/folders.hpp"
+
+#include <fmt/format.h>
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+namespace clvr {
+namespace fs = std::filesystem;
+namespace {
+
+/// Empty when the library is a driver. It stays loaded where the loader has it, too.
+std::string why_no_driver(const std::string& library) {
+    void* handle = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    if (!handle) return fmt::format("cannot be loaded ({})", dlerror());
+    const bool driver = dlsym(handle, "clIcdGetPlatformIDsKHR") || dlsym(handle, "clGetExtensionFunctionAddress");
+    dlclose(handle);
+    return driver ? "" : "is no OpenCL driver";
+}
+
+/// The first line of an .icd file names the library.
+void look_at(const fs::path& icd, std::vector<std::string>& lines) {
+    const auto text = load_file(icd);
+    std::string library = text ? text->substr(0, text->find_first_of("\r\n")) : "";
+    library.erase(library.find_last_not_of(" \t") + 1);
+    if (library.empty()) {
+        lines.push_back(fmt::format("{} names no library", icd.string()));
+    } else if (const std::string why = why_no_driver(library); !why.empty()) {
+        lines.push_back(fmt::format("{}, which {} names, {}", library, icd.string(), why));
+    }
+}
+
+} // namespace
+
+std::vector<std::string> unloadable_drivers() {
+    const char* variable = std::getenv("OCL_ICD_VENDORS");
+    const fs::path place = variable && *variable ? variable : "/etc/OpenCL/vendors";
+    std::vector<std::string> lines;
+    std::error_code failed;
+    if (fs::is_directory(place, failed)) {
+        std::vector<fs::path> files;
+        for (const auto& entry : fs::directory_iterator(place, failed))
+            if (entry.path().extension() == ".icd") files.push_back(entry.path());
+        std::sort(files.begin(), files.end());
+        for (const fs::path& file : files) look_at(file, lines);
+    } else if (place.extension() == ".icd") {
+        look_at(place, lines);
+    } else if (const std::string why = why_no_driver(place.string()); !why.empty()) {
+        lines.push_back(fmt::format("{} {}", place.string(), why));
+    }
+    return lines;
+}
+
+} // namespace clvr
