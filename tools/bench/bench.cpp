@@ -11,7 +11,7 @@ namespace clvr::bench {
 namespace {
 
 constexpr double row_limit = 120, quick_row_limit = 60, candidate_limit = 30, quick_candidate_limit = 15; // [s]
-constexpr double tuning_limit = 270, quick_tuning_limit = 50;                                             // [s] of a device: no new candidate later
+constexpr double tuning_limit = 270, quick_tuning_limit = 50; // [s] of a device: no new candidate later
 
 bool wanted(const BenchOptions& options, const Stage& stage) {
     return options.stages.empty() || std::find(options.stages.begin(), options.stages.end(), stage.name) != options.stages.end();
@@ -30,7 +30,8 @@ DeviceRows measure_device(const DeviceFacts& facts, const BenchOptions& options,
     }
     double best_pace = 0;
     const auto measured = [&](const Stage& stage) {
-        Row row = ask_row(child, {{name_of(facts)}, stage.name, options.quick, best_pace}, options.quick ? quick_row_limit : row_limit);
+        Row row = ask_row(child, {{name_of(facts)}, stage.name, options.quick, best_pace, options.tiny},
+                          options.quick ? quick_row_limit : row_limit);
         if (row.pace_s > 0 && (best_pace <= 0 || row.pace_s < best_pace)) best_pace = row.pace_s;
         if (!distrust.empty() && row.status == Status::ok) row.status = Status::wrong_result, row.reason = distrust;
         return row;
@@ -101,7 +102,8 @@ Verdict ask_verdict(Child& child, const CompareJob& job, double limit_seconds) {
     }
 }
 
-Report run_bench(const std::vector<DeviceFacts>& devices, const BenchOptions& options, Child& child, const std::function<void(const std::string&)>& say) {
+Report run_bench(const std::vector<DeviceFacts>& devices, const BenchOptions& options, Child& child,
+                 const std::function<void(const std::string&)>& say) {
     Report report;
     report.quick = options.quick;
     for (const DeviceFacts& facts : devices) {
@@ -118,7 +120,7 @@ Report run_bench(const std::vector<DeviceFacts>& devices, const BenchOptions& op
         say("\n");
     }
     if (const std::vector<std::size_t> pair = worth_joining(report.devices); !pair.empty()) {
-        MeasureJob job{{}, stage_of_task("render"), options.quick, 0};
+        MeasureJob job{{}, stage_of_task("render"), options.quick, 0, options.tiny};
         for (const std::size_t d : pair) job.devices.push_back(name_of(report.devices[d].facts));
         report.joined.push_back({pair, ask_row(child, job, row_limit)});
     }

@@ -50,8 +50,8 @@ Scene benchmark_scene(int width, int height, int spp) {
     scene.features = false;
     scene.seed = 20261126;
     scene.camera.azimuth = 25, scene.camera.elevation = 15;
-    scene.transfer = TransferFunction{
-        false, {{0, {0.1, 0.1, 0.1}, 0}, {140, {0.9, 0.6, 0.4}, 0}, {170, {0.9, 0.9, 0.9}, 0.6}, {255, {1, 1, 1}, 1}}, ""};
+    scene.transfer =
+        TransferFunction{false, {{0, {0.1, 0.1, 0.1}, 0}, {140, {0.9, 0.6, 0.4}, 0}, {170, {0.9, 0.9, 0.9}, 0.6}, {255, {1, 1, 1}, 1}}, ""};
     return scene;
 }
 

@@ -1,8 +1,8 @@
 // The standard scene of the benchmarks: a volume computed on the host, so that every device gets the same bits, and its parts on a device.
 #pragma once
+#include "host/render/device_volume.hpp"
 #include "host/render/light_tables.hpp"
 #include "host/render/renderer.hpp"
-#include "host/render/device_volume.hpp"
 
 #include <memory>
 

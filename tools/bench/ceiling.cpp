@@ -10,32 +10,31 @@ namespace clvr::native {
 namespace {
 
 // Each of the three loops of an instruction set: LANES floats a register, CHAINS that fit the registers and cover latency x units.
-#define CLVR_LOOPS(NAME, TARGET, VECTOR, LANES, CHAINS, SET, FMA, LOAD, STREAM)                                                           \
-    __attribute__((target(TARGET))) double NAME##_fma(long rounds, float* out) {                                                          \
-        const VECTOR a = SET(0.999999f), b = SET(1e-7f);                                                                                  \
-        VECTOR v[CHAINS];                                                                                                                 \
-        for (int c = 0; c < CHAINS; ++c) v[c] = SET(static_cast<float>(c));                                                               \
-        for (long r = 0; r < rounds; ++r)                                                                                                 \
-            _Pragma("GCC unroll 16") for (int c = 0; c < CHAINS; ++c) v[c] = FMA(v[c], a, b);                                             \
-        for (int c = 0; c < CHAINS; ++c) {                                                                                                \
-            float lanes[LANES];                                                                                                           \
-            std::memcpy(lanes, &v[c], sizeof lanes);                                                                                      \
-            *out += lanes[c % LANES];                                                                                                     \
-        }                                                                                                                                 \
-        return 2.0 * LANES * CHAINS * static_cast<double>(rounds);                                                                        \
-    }                                                                                                                                     \
-    __attribute__((target(TARGET))) void NAME##_copy(const float* from, float* to, std::size_t count) {                                   \
-        std::size_t i = 0;                                                                                                                \
-        for (; i + LANES <= count; i += LANES) STREAM(to + i, LOAD(from + i));                                                            \
-        for (; i < count; ++i) to[i] = from[i];                                                                                           \
-        _mm_sfence();                                                                                                                     \
-    }                                                                                                                                     \
-    __attribute__((target(TARGET))) void NAME##_triad(const float* a, const float* b, float* to, float s, std::size_t count) {            \
-        const VECTOR scale = SET(s);                                                                                                      \
-        std::size_t i = 0;                                                                                                                \
-        for (; i + LANES <= count; i += LANES) STREAM(to + i, FMA(scale, LOAD(b + i), LOAD(a + i)));                                      \
-        for (; i < count; ++i) to[i] = a[i] + s * b[i];                                                                                   \
-        _mm_sfence();                                                                                                                     \
+#define CLVR_LOOPS(NAME, TARGET, VECTOR, LANES, CHAINS, SET, FMA, LOAD, STREAM)                                                            \
+    __attribute__((target(TARGET))) double NAME##_fma(long rounds, float* out) {                                                           \
+        const VECTOR a = SET(0.999999f), b = SET(1e-7f);                                                                                   \
+        VECTOR v[CHAINS];                                                                                                                  \
+        for (int c = 0; c < CHAINS; ++c) v[c] = SET(static_cast<float>(c));                                                                \
+        for (long r = 0; r < rounds; ++r) _Pragma("GCC unroll 16") for (int c = 0; c < CHAINS; ++c) v[c] = FMA(v[c], a, b);                \
+        for (int c = 0; c < CHAINS; ++c) {                                                                                                 \
+            float lanes[LANES];                                                                                                            \
+            std::memcpy(lanes, &v[c], sizeof lanes);                                                                                       \
+            *out += lanes[c % LANES];                                                                                                      \
+        }                                                                                                                                  \
+        return 2.0 * LANES * CHAINS * static_cast<double>(rounds);                                                                         \
+    }                                                                                                                                      \
+    __attribute__((target(TARGET))) void NAME##_copy(const float* from, float* to, std::size_t count) {                                    \
+        std::size_t i = 0;                                                                                                                 \
+        for (; i + LANES <= count; i += LANES) STREAM(to + i, LOAD(from + i));                                                             \
+        for (; i < count; ++i) to[i] = from[i];                                                                                            \
+        _mm_sfence();                                                                                                                      \
+    }                                                                                                                                      \
+    __attribute__((target(TARGET))) void NAME##_triad(const float* a, const float* b, float* to, float s, std::size_t count) {             \
+        const VECTOR scale = SET(s);                                                                                                       \
+        std::size_t i = 0;                                                                                                                 \
+        for (; i + LANES <= count; i += LANES) STREAM(to + i, FMA(scale, LOAD(b + i), LOAD(a + i)));                                       \
+        for (; i < count; ++i) to[i] = a[i] + s * b[i];                                                                                    \
+        _mm_sfence();                                                                                                                      \
     }
 #define CLVR_SSE_FMA(x, y, z) _mm_add_ps(_mm_mul_ps(x, y), z)
 CLVR_LOOPS(avx512, "avx512f", __m512, 16, 16, _mm512_set1_ps, _mm512_fmadd_ps, _mm512_load_ps, _mm512_stream_ps)
@@ -51,9 +50,8 @@ struct Loops {
 
 const Loops& loops() {
     static const Loops chosen = __builtin_cpu_supports("avx512f") ? Loops{avx512_fma, avx512_copy, avx512_triad}
-                                : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
-                                    ? Loops{avx2_fma, avx2_copy, avx2_triad}
-                                    : Loops{sse_fma, sse_copy, sse_triad};
+                                : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? Loops{avx2_fma, avx2_copy, avx2_triad}
+                                                                                                  : Loops{sse_fma, sse_copy, sse_triad};
     return chosen;
 }
 
@@ -102,9 +100,9 @@ double triad(const float* a, const float* b, float* to, float s, std::size_t cou
 }
 
 AlignedFloats::AlignedFloats(std::size_t count)
-    : data_(static_cast<float*>(::operator new(std::max<std::size_t>(count, 1) * sizeof(float), std::align_val_t{64}))), count_(count) {
+    : data_(static_cast<float*>(::operator new (std::max<std::size_t>(count, 1) * sizeof(float), std::align_val_t{64}))), count_(count) {
     std::fill_n(data_, count, 0.0f);
 }
-AlignedFloats::~AlignedFloats() { ::operator delete(data_, std::align_val_t{64}); }
+AlignedFloats::~AlignedFloats() { ::operator delete (data_, std::align_val_t{64}); }
 
 } // namespace clvr::native

@@ -44,7 +44,9 @@ std::string wrongness(const Stage& stage, Size size, const StageRun& run, std::s
     const std::string hash = run.hash(), golden = golden_hash(stage.name, size);
     if (found) *found = hash;
     if (golden.empty()) return "there is no golden hash to hold the result against";
-    return hash == golden ? "" : fmt::format("its bits differ from the golden ones ({} instead of {})", hash.substr(0, 16), golden.substr(0, 16));
+    return hash == golden
+               ? ""
+               : fmt::format("its bits differ from the golden ones ({} instead of {})", hash.substr(0, 16), golden.substr(0, 16));
 }
 
 Status status_of(const Error& error) {
@@ -94,7 +96,7 @@ json measure_stage(const json& request) {
         std::vector<Device> devices;
         for (const json& name : request.at("devices")) devices.push_back(Device::open(find_device(device_from(name)), true));
         const DeviceFacts& facts = devices.front().facts();
-        const Size size = size_for(facts);
+        const Size size = request.at("tiny") ? Size::tiny : size_for(facts);
         row.size = size_name(size);
         if (facts.simulator && !stage.on_simulators) {
             row.status = Status::unsupported;
@@ -166,9 +168,8 @@ json compare_candidate(const json& request) {
             const Stage& stage = stage_named(name);
             const std::string device = request.at("device").dump();
             if (bases.size() > 3) bases.erase(bases.begin());
-            auto found = std::find_if(bases.begin(), bases.end(), [&](const Prepared& p) {
-                return p.device == device && p.stage == stage.name && p.tunables == base;
-            });
+            auto found = std::find_if(bases.begin(), bases.end(),
+                                      [&](const Prepared& p) { return p.device == device && p.stage == stage.name && p.tunables == base; });
             if (found == bases.end()) {
                 bases.push_back({device, stage.name, base, prepare_with(facts, stage, base)});
                 found = bases.end() - 1;
@@ -178,13 +179,15 @@ json compare_candidate(const json& request) {
                 }
             }
             const StageRun run = prepare_with(facts, stage, candidate);
-            if (const std::string wrong = wrongness(stage, size_for(facts), run); !wrong.empty()) return refuse(Status::wrong_result, wrong);
+            if (const std::string wrong = wrongness(stage, size_for(facts), run); !wrong.empty())
+                return refuse(Status::wrong_result, wrong);
             const Comparison c = compare(steady_seconds, found->run.run, run.run, request.at("rounds"));
             if (!(c.speedup > 0)) return refuse(Status::error, "the clock jumped in every round");
             product *= std::pow(c.speedup, 1.0 / static_cast<double>(request.at("stages").size()));
             most_spread = std::max(most_spread, c.spread);
             if (c.pruned) answer["pruned"] = true;
-            if (const std::string wrong = wrongness(stage, size_for(facts), run); !wrong.empty()) return refuse(Status::wrong_result, wrong);
+            if (const std::string wrong = wrongness(stage, size_for(facts), run); !wrong.empty())
+                return refuse(Status::wrong_result, wrong);
             if (c.pruned) break;
         }
         answer["speedup"] = product;
@@ -202,12 +205,14 @@ DeviceName name_of(const DeviceFacts& f) { return {f.index, f.sub_device, f.sub_
 std::string request_of(const MeasureJob& job) {
     json devices = json::array();
     for (const DeviceName& d : job.devices) devices.push_back(to_json(d));
-    return json{{"do", "measure"}, {"devices", devices}, {"stage", job.stage}, {"quick", job.quick}, {"best_pace", job.best_pace}}.dump();
+    return json{{"do", "measure"},    {"devices", devices},         {"stage", job.stage},
+                {"quick", job.quick}, {"best_pace", job.best_pace}, {"tiny", job.tiny}}
+        .dump();
 }
 
 std::string request_of(const CompareJob& job) {
-    return json{{"do", "compare"},  {"device", to_json(job.device)}, {"stages", job.stages}, {"base", job.base}, {"candidate", job.candidate},
-                {"rounds", job.rounds}}
+    return json{{"do", "compare"},  {"device", to_json(job.device)}, {"stages", job.stages},
+                {"base", job.base}, {"candidate", job.candidate},    {"rounds", job.rounds}}
         .dump();
 }
 

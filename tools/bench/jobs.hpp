@@ -1,5 +1,5 @@
-// What the child process does: measures a stage, or compares a candidate of a tuning with what it may replace. Requests and answers are JSON, a line
-// each.
+// What the child process does: measures a stage, or compares a candidate of a tuning with what it may replace. Requests and answers are
+// JSON, a line each.
 #pragma once
 #include "runtime/facts.hpp"
 #include "runtime/tuning.hpp"
@@ -23,6 +23,7 @@ struct MeasureJob {
     std::string stage;
     bool quick = false;
     double best_pace = 0; ///< seconds, 0: unknown
+    bool tiny = false;    ///< the size of simulators, on any device
 };
 
 struct CompareJob {

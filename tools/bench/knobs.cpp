@@ -5,7 +5,8 @@ namespace clvr::bench {
 std::vector<Knob> knobs_for(const DeviceFacts& d) {
     const bool cpu = d.type == DeviceType::cpu;
     const int native = d.native_float_width >= 16 ? 16 : d.native_float_width >= 8 ? 8 : 4, width = cpu ? native : 1;
-    const std::vector<std::string> network{"GuideNet"}, pixels{"slice", "splat"}, rays{"path trace"}, marches{"path trace", "feature march"};
+    const std::vector<std::string> network{"GuideNet"}, pixels{"slice", "splat"}, rays{"path trace"},
+        marches{"path trace", "feature march"};
     const std::vector<int> widths{1, 4, 8, 16};
     const auto groups = [&](std::vector<int> on_cpu) { return cpu ? on_cpu : std::vector{16, 32, 64, 128, 256}; };
     return {

@@ -22,7 +22,7 @@ namespace {
 struct Options {
     std::string selector, json, html;
     std::vector<std::string> stages;
-    bool quick = false, tune = false, save = false, explain = false, child = false, hashes = false;
+    bool quick = false, tune = false, save = false, explain = false, child = false, hashes = false, tiny = false;
 };
 
 /// What --save keeps: a device per task; the general one is that for rendering.
@@ -45,7 +45,8 @@ void save(const Report& report, const std::vector<DeviceFacts>& all) {
 void print_recommendations(const Report& report, bool explain) {
     for (const Recommendation& r : report.recommendations) {
         std::string names;
-        for (const std::size_t d : r.devices) names += fmt::format("{}device {}", names.empty() ? "" : " and ", report.devices[d].facts.index);
+        for (const std::size_t d : r.devices)
+            names += fmt::format("{}device {}", names.empty() ? "" : " and ", report.devices[d].facts.index);
         fmt::print("{}: {}: {}.\n", r.task, names.empty() ? "nothing" : names, r.reason);
         if (!explain) continue;
         for (const std::string& line : r.evidence) fmt::print("    {}\n", line);
@@ -67,10 +68,11 @@ void bench_devices(const Options& o) {
     const std::vector<DeviceFacts> all = list_devices();
     std::vector<DeviceFacts> devices = all;
     if (!o.selector.empty() || all.empty()) devices = select_devices(o.selector).devices; // says what is wrong where there is none
-    if (o.save && (!o.stages.empty() || std::any_of(devices.begin(), devices.end(), [](const DeviceFacts& d) { return d.sub_devices != 0; })))
+    if (o.save && (!o.stages.empty() || o.tiny ||
+                   std::any_of(devices.begin(), devices.end(), [](const DeviceFacts& d) { return d.sub_devices != 0; })))
         throw Error(ErrorKind::usage, "--save needs whole devices and all stages; leave --stage and parts such as cpu/2 away");
     Child child({std::filesystem::read_symlink("/proc/self/exe").string(), "--child"});
-    const Report report = run_bench(devices, {o.quick, o.tune, o.stages}, child, [](const std::string& text) {
+    const Report report = run_bench(devices, {o.quick, o.tune, o.tiny, o.stages}, child, [](const std::string& text) {
         fmt::print("{}", text);
         std::fflush(stdout);
     });
@@ -97,8 +99,12 @@ int run(int argc, char** argv) {
     CLI::App app("clvr-bench measures every OpenCL device on clvr's real stages, checks its results, tunes, recommends and remembers.");
     app.name("clvr-bench");
     app.set_version_flag("--version", CLVR_VERSION);
-    app.add_option("--device", o.selector, "Only this: an index, cpu, gpu, part of a name, cpu/2, several joined by +; every device otherwise")->type_name("SEL");
-    app.add_option("--stage", o.stages, "Only this stage, as the table names it; may be given again")->type_name("NAME")->allow_extra_args(false);
+    app.add_option("--device", o.selector,
+                   "Only this: an index, cpu, gpu, part of a name, cpu/2, several joined by +; every device otherwise")
+        ->type_name("SEL");
+    app.add_option("--stage", o.stages, "Only this stage, as the table names it; may be given again")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
     app.add_flag("--quick", o.quick, "Shorter measurements, and a tuning within a minute of what matters most");
     app.add_flag("--tune", o.tune, "Find the fastest tunables of each device (at most 5 minutes each) and keep them for all commands");
     app.add_flag("--save", o.save, "Remember the recommended devices for the next runs of clvr");
@@ -106,6 +112,7 @@ int run(int argc, char** argv) {
     app.add_option("--json", o.json, "Write all numbers as JSON")->type_name("FILE");
     app.add_option("--html", o.html, "Write a page with tables, bars and rooflines")->type_name("FILE");
     app.add_flag("--child", o.child, "Serve requests on stdin (for clvr-bench itself)")->group("");
+    app.add_flag("--tiny", o.tiny, "The sizes of simulators on every device (for tests)")->group("");
     app.add_flag("--hashes", o.hashes, "Print the hash of each result")->group("");
     try {
         app.parse(argc, argv);

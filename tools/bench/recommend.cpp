@@ -79,7 +79,8 @@ Recommendation recommend(const std::string& task, const std::vector<DeviceRows>&
     r.devices = {best[0]};
     if (best.size() == 1) {
         r.reason = devices.size() == 1 ? "it is the only device here, and right in every stage"
-                                       : fmt::format("it is the only one of {} devices that may be taken: {:.3g} {}", devices.size(), first.rate, first.unit);
+                                       : fmt::format("it is the only one of {} devices that may be taken: {:.3g} {}", devices.size(),
+                                                     first.rate, first.unit);
     } else {
         const Row& second = *row_of(devices[best[1]], stage);
         r.reason = fmt::format("it does {:.3g} {}, {:.2f} times as many as the next, {}", first.rate, first.unit, first.rate / second.rate,

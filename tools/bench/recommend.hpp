@@ -26,8 +26,8 @@ std::string stage_of_task(const std::string& task);
 /// "render", "denoise", "train".
 const std::vector<std::string>& task_names();
 
-/// The fastest device whose row of the task's stage is ok and whose other rows of clvr's own stages hold no wrong result; simulators never. A joined
-/// measurement wins where it is at least a tenth faster than the best alone.
+/// The fastest device whose row of the task's stage is ok and whose other rows of clvr's own stages hold no wrong result; simulators never.
+/// A joined measurement wins where it is at least a tenth faster than the best alone.
 Recommendation recommend(const std::string& task, const std::vector<DeviceRows>& devices, const std::vector<Joined>& joined = {});
 
 /// The two fastest devices for rendering, when joining them is worth measuring: both able, the slower at least a tenth of the faster.

@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
         const Scene scene = bench::benchmark_scene(640, 368, 1);
         const PreparedVolume& prepared = bench::prepared_volume(256);
         const bench::SceneOnDevice parts(device, prepared, scene);
-        const native::Inputs inputs{&prepared.voxels,      &prepared.grid,      &parts.classified.table, &parts.classified.majorants,
+        const native::Inputs inputs{&prepared.voxels,    &prepared.grid,     &parts.classified.table, &parts.classified.majorants,
                                     parts.volume_params, parts.render_params};
         const double rays = static_cast<double>(scene.width) * scene.height;
         fmt::print("{}, packets of {}, 256^3 u8, {}x{}\n", device.facts().name, packet_width(device), scene.width, scene.height);

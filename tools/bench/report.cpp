@@ -48,9 +48,10 @@ std::string table_text(const DeviceRows& d) {
         if (!r.note.empty() && r.status == Status::ok) said += fmt::format(" ({})", r.note);
         if (r.repeated > 0 && r.status == Status::ok) said += fmt::format(", {} batches again", r.repeated);
         const bool known = r.status == Status::ok;
-        text += fmt::format("  {:<16}  {:>9}  {:>7}  {:>10} {:<10}  {:>9}  {:>10}  {}\n", r.stage, known ? time_text(r.seconds) : "-",
-                            known && r.batches > 2 ? fmt::format("{:.1f} %", 100 * r.spread) : "-", known ? fmt::format("{:.3g}", r.rate) : "-",
-                            known ? r.unit : "", known ? percent(r.native_share) : "-", known ? percent(r.share) : "-", said);
+        text +=
+            fmt::format("  {:<16}  {:>9}  {:>7}  {:>10} {:<10}  {:>9}  {:>10}  {}\n", r.stage, known ? time_text(r.seconds) : "-",
+                        known && r.batches > 2 ? fmt::format("{:.1f} %", 100 * r.spread) : "-", known ? fmt::format("{:.3g}", r.rate) : "-",
+                        known ? r.unit : "", known ? percent(r.native_share) : "-", known ? percent(r.share) : "-", said);
     }
     return text;
 }
@@ -74,7 +75,8 @@ nlohmann::json report_json(const Report& report) {
     for (const Joined& j : report.joined) joined.push_back({{"devices", indices(j.devices)}, {"row", to_json(j.row)}});
     for (const Recommendation& r : report.recommendations)
         recommendations[r.task] = {{"devices", indices(r.devices)}, {"reason", r.reason}, {"evidence", r.evidence}};
-    return {{"clvr", CLVR_VERSION}, {"quick", report.quick}, {"devices", devices}, {"joined", joined}, {"recommendations", recommendations}};
+    return {
+        {"clvr", CLVR_VERSION}, {"quick", report.quick}, {"devices", devices}, {"joined", joined}, {"recommendations", recommendations}};
 }
 
 } // namespace clvr::bench

@@ -29,8 +29,8 @@ nlohmann::json report_json(const Report& report);
 /// One page that needs nothing beside it: tables, bars per stage, a roofline of each device.
 std::string report_html(const Report& report);
 
-/// The roofline of a device as SVG: its ceilings by arithmetic intensity, and the stages whose arithmetic and bytes are known. Empty without
-/// ceilings.
+/// The roofline of a device as SVG: its ceilings by arithmetic intensity, and the stages whose arithmetic and bytes are known. Empty
+/// without ceilings.
 std::string roofline_svg(const DeviceRows& device);
 
 } // namespace clvr::bench

@@ -33,13 +33,18 @@ nlohmann::json to_json(const Row& r) {
 
 Row row_from_json(const nlohmann::json& j) {
     Row r;
-    for (const auto& [name, to] : {std::pair("stage", &r.stage), {"unit", &r.unit}, {"size", &r.size}, {"reason", &r.reason},
-                                   {"note", &r.note}, {"hash", &r.hash}})
-        *to = j.at(name).get<std::string>();
     for (const auto& [name, to] :
-         {std::pair("seconds", &r.seconds), {"spread", &r.spread}, {"rate", &r.rate}, {"flops_per_second", &r.flops},
-          {"bytes_per_second", &r.bytes}, {"flops_per_byte", &r.intensity}, {"share_of_native", &r.native_share},
-          {"share_of_ceiling", &r.share}, {"pace_seconds", &r.pace_s}})
+         {std::pair("stage", &r.stage), {"unit", &r.unit}, {"size", &r.size}, {"reason", &r.reason}, {"note", &r.note}, {"hash", &r.hash}})
+        *to = j.at(name).get<std::string>();
+    for (const auto& [name, to] : {std::pair("seconds", &r.seconds),
+                                   {"spread", &r.spread},
+                                   {"rate", &r.rate},
+                                   {"flops_per_second", &r.flops},
+                                   {"bytes_per_second", &r.bytes},
+                                   {"flops_per_byte", &r.intensity},
+                                   {"share_of_native", &r.native_share},
+                                   {"share_of_ceiling", &r.share},
+                                   {"pace_seconds", &r.pace_s}})
         *to = j.at(name).get<double>();
     r.batches = j.at("batches");
     r.repeated = j.at("repeated");

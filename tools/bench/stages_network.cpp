@@ -66,7 +66,8 @@ StageRun guide_network(std::vector<Device>& devices, Size size) {
     return r;
 }
 
-// Arithmetic that is of use, for the roofline: a pixel goes into 4 windows x 2 depths of 4 channels a level, and comes out of 8 cells likewise.
+// Arithmetic that is of use, for the roofline: a pixel goes into 4 windows x 2 depths of 4 channels a level, and comes out of 8 cells
+// likewise.
 constexpr double splat_flops = 4 * 2 * 4 * 2, slice_flops = 8 * 4 * 2;
 
 StageRun splat(std::vector<Device>& devices, Size size) {

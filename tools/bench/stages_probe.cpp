@@ -216,7 +216,8 @@ StageRun image_samples(std::vector<Device>& devices, Size size) {
     r.hash = [=]() mutable {
         const std::vector<float> found = d.download<float>(*v.to, v.columns);
         float worst = 0;
-        for (std::size_t i = 0; i < found.size(); ++i) worst = std::max(worst, std::abs(found[i] - (*truth)[i]) / static_cast<float>(v.steps));
+        for (std::size_t i = 0; i < found.size(); ++i)
+            worst = std::max(worst, std::abs(found[i] - (*truth)[i]) / static_cast<float>(v.steps));
         return worst < 1.0f / 128 ? std::string("as from a buffer") : fmt::format("off by {:.4f} a sample", worst);
     };
     r.items = static_cast<double>(v.columns) * v.steps;

@@ -39,9 +39,7 @@ StageRun compute_volume(std::vector<Device>& devices, Size size) {
     const auto voxels = std::make_shared<Voxels>();
     StageRun r;
     r.run = [=] { *voxels = make_phantom(*d, "head", {Int3{edge, edge, edge}}); };
-    r.hash = [=] {
-        return hash_of(std::vector<float>(voxels->data<std::int16_t>(), voxels->data<std::int16_t>() + voxels->count()));
-    };
+    r.hash = [=] { return hash_of(std::vector<float>(voxels->data<std::int16_t>(), voxels->data<std::int16_t>() + voxels->count())); };
     r.items = 1.0 * edge * edge * edge;
     return r;
 }

@@ -54,7 +54,7 @@ struct Batch {
 /// Seconds of one run within a batch that is no jump of the clock: NaN where it ran backwards, stood still or leapt.
 double believable(double seconds, double expected) {
     constexpr double leap = 1000;
-    return seconds > 0 && seconds < leap * std::max(expected, 1e-6) ? seconds : std::numeric_limits<double>::quiet_NaN();
+    return seconds * leap > expected && seconds < leap * std::max(expected, 1e-6) ? seconds : std::numeric_limits<double>::quiet_NaN();
 }
 
 } // namespace
@@ -100,7 +100,8 @@ Timing measure(const Clock& clock, Pace& pace, const std::function<void()>& work
         return timing;
     }
     std::vector<double> works, besides, ratios, paces;
-    for (const Batch& b : good) works.push_back(b.work), besides.push_back(b.beside), ratios.push_back(b.beside / b.work), paces.push_back(b.pace);
+    for (const Batch& b : good)
+        works.push_back(b.work), besides.push_back(b.beside), ratios.push_back(b.beside / b.work), paces.push_back(b.pace);
     timing.median_s = median(works);
     timing.spread = spread(works);
     timing.beside_s = median(besides);

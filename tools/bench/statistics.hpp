@@ -49,9 +49,9 @@ struct Timing {
     std::string note;                ///< why the numbers are to be doubted; empty when they are not
 };
 
-/// Measures `work`, which has run once before (builds, first touches). `beside` runs in turn with it, once a batch. Batches during which the
-/// pace was slow, changed, or the clock jumped, are measured again, at most twice as many as wanted; when the slow phase stays, its batches count
-/// and the note says so.
+/// Measures `work`, which has run once before (builds, first touches). `beside` runs in turn with it, once a batch. Batches during which
+/// the pace was slow, changed, or the clock jumped, are measured again, at most twice as many as wanted; when the slow phase stays, its
+/// batches count and the note says so.
 Timing measure(const Clock& clock, Pace& pace, const std::function<void()>& work, const Plan& plan = {},
                const std::function<void()>& beside = {});
 
@@ -62,8 +62,8 @@ struct Comparison {
     bool pruned = false; ///< given up early: it is slower by far
 };
 
-/// Runs two sides in turn, `rounds` times, each first every other time; gives up after 2 rounds where the candidate takes more than `hopeless`
-/// times as long.
+/// Runs two sides in turn, `rounds` times, each first every other time; gives up after 2 rounds where the candidate takes more than
+/// `hopeless` times as long.
 Comparison compare(const Clock& clock, const std::function<void()>& base, const std::function<void()>& candidate, int rounds,
                    double hopeless = 1.3);
 

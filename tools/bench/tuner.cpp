@@ -16,8 +16,8 @@ std::string joined(const std::vector<std::string>& names) { return fmt::format("
 /// The line of evidence of a candidate.
 std::string line_of(const std::string& name, int value, const Knob& knob, const Verdict& v, int base) {
     if (v.status != Status::ok) return fmt::format("{} {}: {}: {}", name, value, status_name(v.status), v.reason);
-    return fmt::format("{} {}: {:.3f} x as fast as {} in {} (+-{:.1f} %){}", name, value, v.speedup, base, joined(knob.stages), 100 * v.spread,
-                       v.pruned ? ", given up early" : "");
+    return fmt::format("{} {}: {:.3f} x as fast as {} in {} (+-{:.1f} %){}", name, value, v.speedup, base, joined(knob.stages),
+                       100 * v.spread, v.pruned ? ", given up early" : "");
 }
 
 class Walk {
@@ -72,7 +72,8 @@ private:
 
 } // namespace
 
-TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Evaluate& evaluate, const Clock& clock, double limit_seconds) {
+TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Evaluate& evaluate, const Clock& clock,
+                 double limit_seconds) {
     TunedDevice result;
     Walk walk(evaluate, clock, limit_seconds, result);
     Tunables best = start;
@@ -85,10 +86,10 @@ TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Ev
     for (const std::string& stage : stages) {
         if (best == start) break;
         const Verdict v = evaluate(start, best, {stage});
-        result.tuning.evidence.push_back(v.status == Status::ok
-                                             ? fmt::format("in the end: {:.3f} x as fast as before in {} (+-{:.1f} %)", v.speedup, stage,
-                                                           100 * v.spread)
-                                             : fmt::format("in the end: {} in {}: {}", status_name(v.status), stage, v.reason));
+        result.tuning.evidence.push_back(
+            v.status == Status::ok
+                ? fmt::format("in the end: {:.3f} x as fast as before in {} (+-{:.1f} %)", v.speedup, stage, 100 * v.spread)
+                : fmt::format("in the end: {} in {}: {}", status_name(v.status), stage, v.reason));
         if (v.status == Status::ok && v.speedup >= no_loss) continue;
         for (const Knob& knob : knobs) {
             if (std::find(knob.stages.begin(), knob.stages.end(), stage) == knob.stages.end()) continue;

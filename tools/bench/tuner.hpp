@@ -30,14 +30,14 @@ const std::vector<std::pair<std::string, std::string>>& untuned();
 using Evaluate = std::function<Verdict(const Tunables& base, const Tunables& candidate, const std::vector<std::string>& stages)>;
 
 struct TunedDevice {
-    Tuning tuning;           ///< the values to keep and a line for each candidate tried
+    Tuning tuning; ///< the values to keep and a line for each candidate tried
     int tried = 0, refused = 0;
     std::vector<std::string> left_out; ///< knobs for which no time was left
 };
 
-/// Walks each knob from its value in `start` to its neighbours while they are faster by more than noise; then holds all winners together against
-/// `start` once more per stage, and drops those of a stage that lost. A candidate that is wrong, crashes or hangs is refused and ends the walk
-/// that way. No new candidate begins after `limit_seconds`.
+/// Walks each knob from its value in `start` to its neighbours while they are faster by more than noise; then holds all winners together
+/// against `start` once more per stage, and drops those of a stage that lost. A candidate that is wrong, crashes or hangs is refused and
+/// ends the walk that way. No new candidate begins after `limit_seconds`.
 TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Evaluate& evaluate, const Clock& clock, double limit_seconds);
 
 } // namespace clvr::bench
