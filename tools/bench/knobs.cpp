@@ -1,5 +1,7 @@
 #include "tools/bench/tuner.hpp"
 
+#include <algorithm>
+
 namespace clvr::bench {
 
 std::vector<Knob> knobs_for(const DeviceFacts& d) {
@@ -11,6 +13,8 @@ std::vector<Knob> knobs_for(const DeviceFacts& d) {
     const auto groups = [&](std::vector<int> on_cpu) { return cpu ? on_cpu : std::vector{16, 32, 64, 128, 256}; };
     return {
         {"packet", marches, widths, width, true},
+        {"packet_run", rays, {1, 4, 8, 16, 32, 64}, width == 1 ? 1 : 16, true},
+        {"packet_refill", rays, {1, 2, 4, 8, 12, 16}, std::max(1, width / 4), false},
         {"conv_width", {"GuideNet", "slice", "splat"}, widths, cpu ? 16 : 1, true},
         {"conv_vectors", network, {1, 2, 3, 4, 5, 6}, 5, true},
         {"conv_block", network, {1, 2, 4, 5, 10}, 5, true},
