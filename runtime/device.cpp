@@ -6,13 +6,12 @@
 #include "runtime/quirks.hpp"
 #include "runtime/size.hpp"
 #include "runtime/trust.hpp"
+#include "runtime/tuning.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <deque>
-#include <sstream>
 #include <tuple>
 
 namespace clvr {
@@ -20,22 +19,6 @@ namespace {
 
 /// Events kept before the older half is waited for and read.
 constexpr std::size_t max_pending_events = 1024;
-
-std::map<std::string, int> tunables_from_environment() {
-    std::map<std::string, int> tunables;
-    const char* text = std::getenv("CLVR_TUNE");
-    std::istringstream items(text ? text : "");
-    for (std::string item; std::getline(items, item, ',');) {
-        const std::size_t equals = item.find('=');
-        const std::size_t start = equals == std::string::npos ? item.size() : equals + 1;
-        char* end = nullptr;
-        const long value = std::strtol(item.c_str() + start, &end, 10);
-        if (equals == 0 || end == item.c_str() + start || *end)
-            throw Error(ErrorKind::usage, fmt::format("\"{}\" is not name=value with a whole number", item), "CLVR_TUNE");
-        tunables[item.substr(0, equals)] = static_cast<int>(value);
-    }
-    return tunables;
-}
 
 std::size_t rounded_up(std::size_t value, std::size_t multiple) { return (value + multiple - 1) / multiple * multiple; }
 
@@ -52,7 +35,7 @@ struct Device::State {
     cl::CommandQueue queue;
     std::shared_ptr<Account> account;
     std::size_t max_alloc_bytes = 0, max_memory_bytes = 0;
-    std::map<std::string, int> tunables;
+    Tunables tunables;
     std::map<std::pair<std::string, Defines>, cl::Program> programs;
     std::deque<Pending> pending;
     Profile profile;
@@ -95,7 +78,7 @@ Device Device::open(const DeviceFacts& facts, bool relaxed) {
     device.state_ = std::make_shared<State>();
     State& state = *device.state_;
     state.facts = facts;
-    state.tunables = tunables_from_environment();
+    state.tunables = tuning_in_force(facts).values;
     state.max_alloc_bytes = std::min(facts.max_alloc_bytes, size_from_environment("CLVR_MAX_ALLOC").value_or(facts.max_alloc_bytes));
     state.max_memory_bytes = std::min(facts.global_bytes, size_from_environment("CLVR_MAX_MEMORY").value_or(facts.global_bytes));
     cl_check(state.doing("opening"), [&] {
@@ -116,6 +99,8 @@ int Device::tunable(const std::string& name, int fallback) const {
 }
 
 void Device::set_tunable(const std::string& name, int value) { state_->tunables[name] = value; }
+
+void Device::set_tunables(const std::map<std::string, int>& all) { state_->tunables = all; }
 
 std::size_t Device::max_alloc_bytes() const { return std::min(state_->max_alloc_bytes, state_->max_memory_bytes); }
 

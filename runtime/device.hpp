@@ -86,9 +86,11 @@ public:
 
     const DeviceFacts& facts() const;
 
-    /// Tunables (speed only, never bits): packet width and such. `tunable` returns the stored value, else `fallback`.
+    /// Tunables (speed only, never bits): packet width and such. `tunable` returns the value in force (runtime/tuning.hpp) or set since,
+    /// else `fallback`. `set_tunables` replaces all, whatever was in force.
     int tunable(const std::string& name, int fallback) const;
     void set_tunable(const std::string& name, int value);
+    void set_tunables(const std::map<std::string, int>& all);
 
     /// Largest single allocation and what is left of the total in bytes, by clvr's own account
     /// (device limits, lowered by CLVR_MAX_ALLOC, CLVR_MAX_MEMORY and set_memory_limit()).

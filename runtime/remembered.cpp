@@ -16,18 +16,27 @@ std::optional<std::filesystem::path> remembered_path() {
     return *folder / "device.json";
 }
 
+nlohmann::json entries_of(const std::vector<RememberedDevice>& devices) {
+    nlohmann::json entries = nlohmann::json::array();
+    for (const RememberedDevice& device : devices)
+        entries.push_back(
+            {{"platform", device.platform}, {"name", device.name}, {"occurrence", device.occurrence}, {"sub_devices", device.sub_devices}});
+    return entries;
+}
+
 bool same_names(const DeviceFacts& a, const DeviceFacts& b) { return a.platform == b.platform && a.name == b.name; }
 
 } // namespace
 
-std::optional<std::vector<RememberedDevice>> load_remembered() {
+std::optional<std::vector<RememberedDevice>> load_remembered(const std::string& task) {
     const auto path = remembered_path();
     const auto text = path ? load_file(*path) : std::nullopt;
     if (!text) return std::nullopt;
     try {
-        std::vector<RememberedDevice> devices;
         const auto json = nlohmann::json::parse(*text);
-        for (const nlohmann::json& entry : json.at("devices"))
+        const bool by_task = json.contains("tasks") && json.at("tasks").contains(task);
+        std::vector<RememberedDevice> devices;
+        for (const nlohmann::json& entry : by_task ? json.at("tasks").at(task) : json.at("devices"))
             devices.push_back({entry.at("platform"), entry.at("name"), entry.value("occurrence", 0), entry.value("sub_devices", 0)});
         if (devices.empty()) throw Error(ErrorKind::input, "names no device; delete the file or run clvr-bench --save", path->string());
         return devices;
@@ -37,14 +46,12 @@ std::optional<std::vector<RememberedDevice>> load_remembered() {
     }
 }
 
-void save_remembered(const std::vector<RememberedDevice>& devices) {
+void save_remembered(const std::vector<RememberedDevice>& devices, const RememberedByTask& by_task) {
     const auto path = remembered_path();
     if (!path) throw Error(ErrorKind::input, "there is no folder to remember the device in; set HOME or XDG_CONFIG_HOME");
-    nlohmann::json entries = nlohmann::json::array();
-    for (const RememberedDevice& device : devices)
-        entries.push_back(
-            {{"platform", device.platform}, {"name", device.name}, {"occurrence", device.occurrence}, {"sub_devices", device.sub_devices}});
-    if (!replace_file(*path, nlohmann::json{{"devices", entries}}.dump(2) + "\n"))
+    nlohmann::json json{{"devices", entries_of(devices)}};
+    for (const auto& [task, chosen] : by_task) json["tasks"][task] = entries_of(chosen);
+    if (!replace_file(*path, json.dump(2) + "\n"))
         throw Error(ErrorKind::input, "cannot be written; check the folder's permissions", path->string());
 }
 

@@ -3,6 +3,7 @@
 #include "runtime/facts.hpp"
 #include "runtime/selector.hpp"
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,11 +17,15 @@ struct RememberedDevice {
     int sub_devices = 0; ///< equal parts, 0: whole
 };
 
-/// What is kept; nothing when there is no such file. Throws Error{input} naming the file when it cannot be understood.
-std::optional<std::vector<RememberedDevice>> load_remembered();
+/// Devices by task, such as "render".
+using RememberedByTask = std::map<std::string, std::vector<RememberedDevice>>;
 
-/// Keeps the choice. Throws Error{input} naming the file when it cannot be written.
-void save_remembered(const std::vector<RememberedDevice>& devices);
+/// What is kept for the task, else for all; nothing when there is no such file. Throws Error{input} naming the file when it cannot be
+/// understood.
+std::optional<std::vector<RememberedDevice>> load_remembered(const std::string& task = {});
+
+/// Keeps the choice for all tasks but those of `by_task`. Throws Error{input} naming the file when it cannot be written.
+void save_remembered(const std::vector<RememberedDevice>& devices, const RememberedByTask& by_task = {});
 
 /// How to remember these parts of the list.
 std::vector<RememberedDevice> remember(const std::vector<DevicePart>& parts, const std::vector<DeviceFacts>& devices);

@@ -65,12 +65,12 @@ Choice choose_devices(const std::vector<PlatformFacts>& platforms, const Wishes&
     return choice;
 }
 
-Selection select_devices(const std::string& selector) {
+Selection select_devices(const std::string& selector, const std::string& task) {
     const char* environment = std::getenv("CLVR_DEVICE");
     const std::vector<PlatformFacts> platforms = list_platforms();
     const std::vector<DeviceFacts> devices = flat(platforms);
     const bool asked = !selector.empty() || (environment && *environment);
-    const Wishes wishes{selector, environment ? environment : "", asked ? std::nullopt : load_remembered()};
+    const Wishes wishes{selector, environment ? environment : "", asked ? std::nullopt : load_remembered(task)};
     const Choice choice =
         choose_devices(platforms, wishes, [&](const std::vector<std::size_t>& candidates) { return fastest_device(devices, candidates); });
     Selection selection{{}, choice.rule};

@@ -1,10 +1,11 @@
-# install() and the relocatable tarball: bin/clvr finds the libraries it was built with in lib/clvr beside it, on any x86-64 Linux with
+# install() and the relocatable tarball: bin/clvr and bin/clvr-bench find the libraries they were built with in lib/clvr beside them, on any x86-64 Linux with
 # glibc 2.36 and GCC 12's runtime. Not carried: glibc, libstdc++, libgcc_s, and OpenCL drivers (those belong to the machine).
 # DT_RPATH, not DT_RUNPATH: it also serves the libraries that the libraries need. tools/check_package.sh tries the tarball on a bare Debian 13.
-set_target_properties(clvr PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/clvr")
+set_target_properties(clvr clvr-bench PROPERTIES INSTALL_RPATH "$ORIGIN/../lib/clvr")
 target_link_options(clvr PRIVATE LINKER:--disable-new-dtags)
+target_link_options(clvr-bench PRIVATE LINKER:--disable-new-dtags)
 
-install(TARGETS clvr RUNTIME_DEPENDENCY_SET clvr_libraries RUNTIME DESTINATION bin)
+install(TARGETS clvr clvr-bench RUNTIME_DEPENDENCY_SET clvr_libraries RUNTIME DESTINATION bin)
 install(
   RUNTIME_DEPENDENCY_SET clvr_libraries
   PRE_EXCLUDE_REGEXES "^ld-linux" "^lib(c|m|dl|rt|pthread|resolv|stdc\\+\\+|gcc_s)\\.so"

@@ -80,7 +80,7 @@ void add_ablation_command(CLI::App& app) {
     c->add_option("--lr", s.training.learning_rate, "Learning rate of Adam, falling along a cosine [0.001]")->group("Training");
     c->add_option("--seed", s.training.seed, "Of initialisation and patches [0]")->group("Training");
     c->add_flag("--json", o->json, "Print JSON");
-    add_device_options(*c, o->device);
+    add_device_options(*c, o->device, "train");
     c->callback([o, c] { ablation(*o, command_text(*c)); });
 }
 

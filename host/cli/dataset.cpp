@@ -139,7 +139,7 @@ void add_dataset_command(CLI::App& app) {
     m->add_option("--dims", o->dims, "Voxels [those of the published volume that it is like, else its own]")->type_name("XxYxZ");
     m->add_option("--type", o->type, "u8, i8, u16, i16 or f32 [as --dims]");
     m->add_option("--seed", o->seed, "Of growth, texture and noise [0]");
-    add_device_options(*m, o->device);
+    add_device_options(*m, o->device, "render");
     m->callback([o] { make(*o); });
 }
 

@@ -127,7 +127,7 @@ void add_denoise_command(CLI::App& app) {
         ->delimiter(',');
     c->add_option("--exposure", o->tonemap.exposure, "PNG: exposure in stops [0]");
     c->add_option("--tonemap", o->tonemap.curve, "PNG: filmic, aces, reinhard or none [filmic]");
-    add_device_options(*c, o->device);
+    add_device_options(*c, o->device, "denoise");
     c->callback([o] { denoise(*o); });
 }
 

@@ -7,7 +7,8 @@
 
 namespace clvr {
 
-void add_device_options(CLI::App& c, DeviceOptions& o) {
+void add_device_options(CLI::App& c, DeviceOptions& o, const std::string& task) {
+    o.task = task;
     c.add_option("--device", o.selector, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +")
         ->type_name("SEL")
         ->group("Device");
@@ -17,7 +18,7 @@ void add_device_options(CLI::App& c, DeviceOptions& o) {
 }
 
 std::vector<Device> open_devices(const DeviceOptions& o) {
-    const Selection selection = select_devices(o.selector);
+    const Selection selection = select_devices(o.selector, o.task);
     std::vector<Device> devices;
     for (const auto& facts : selection.devices) {
         devices.push_back(Device::open(facts, o.relaxed));

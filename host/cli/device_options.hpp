@@ -11,11 +11,12 @@ namespace clvr {
 
 struct DeviceOptions {
     std::string selector, memory;
+    std::string task; ///< "render", "denoise" or "train": which remembered choice counts (runtime/remembered.hpp)
     bool relaxed = false, profile = false;
 };
 
-/// Adds --device, --memory, --relaxed and --profile.
-void add_device_options(CLI::App& command, DeviceOptions& options);
+/// Adds --device, --memory, --relaxed and --profile for a command of that task.
+void add_device_options(CLI::App& command, DeviceOptions& options, const std::string& task);
 
 /// Opens what the options select (all of them, or the first alone), with its memory limit. Throws Error.
 std::vector<Device> open_devices(const DeviceOptions& options);

@@ -6,6 +6,7 @@
 #include "runtime/select.hpp"
 #include "runtime/size.hpp"
 #include "runtime/trust.hpp"
+#include "runtime/tuning.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -16,22 +17,41 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace clvr {
 namespace {
 
+/// Tasks that may have devices of their own (runtime/remembered.hpp), and what clvr does then.
+constexpr std::pair<const char*, const char*> tasks[] = {{"render", "renders"}, {"denoise", "denoises"}, {"train", "trains"}};
+
 /// All that the command shows.
 struct Report {
     std::vector<PlatformFacts> platforms;
-    std::map<int, std::string> trust; ///< by index: "ok", the failing operations, or why the device was not probed
-    std::optional<Selection> selection;
-    std::optional<Error> error; ///< why nothing is selected
+    std::map<int, std::string> trust;           ///< by index: "ok", the failing operations, or why the device was not probed
+    std::optional<Selection> selection;         ///< of the first task
+    std::map<std::string, Selection> otherwise; ///< tasks for which other devices are chosen
+    std::optional<Error> error;                 ///< why nothing is selected
 };
 
 bool selected(const Report& report, int index) {
-    if (!report.selection) return false;
-    const auto& devices = report.selection->devices;
-    return std::any_of(devices.begin(), devices.end(), [&](const DeviceFacts& d) { return d.index == index; });
+    const auto in = [&](const Selection& s) {
+        return std::any_of(s.devices.begin(), s.devices.end(), [&](const DeviceFacts& d) { return d.index == index; });
+    };
+    return (report.selection && in(*report.selection)) ||
+           std::any_of(report.otherwise.begin(), report.otherwise.end(), [&](const auto& task) { return in(task.second); });
+}
+
+/// "device 0", "the 2 parts of device 0", "device 0 and device 1".
+std::string selection_text(const Selection& selection) {
+    std::vector<std::string> names;
+    for (const DeviceFacts& device : selection.devices)
+        if (device.sub_devices == 0) {
+            names.push_back(fmt::format("device {}", device.index));
+        } else if (device.sub_device == 0) {
+            names.push_back(fmt::format("the {} parts of device {}", device.sub_devices, device.index));
+        }
+    return fmt::format("{}", fmt::join(names, " and "));
 }
 
 /// Simulators are slow: they are not probed merely to be listed.
@@ -50,7 +70,12 @@ Report make_report(const std::string& selector) {
     Report report;
     report.platforms = list_platforms();
     try {
-        report.selection = select_devices(selector);
+        report.selection = select_devices(selector, tasks[0].first);
+        for (const auto& [task, does] : tasks) {
+            Selection other = select_devices(selector, task);
+            if (other.rule != report.selection->rule || selection_text(other) != selection_text(*report.selection))
+                report.otherwise.emplace(task, std::move(other));
+        }
     } catch (const Error& error) {
         report.error = error;
     }
@@ -58,18 +83,6 @@ Report make_report(const std::string& selector) {
         for (const DeviceFacts& device : platform.devices)
             report.trust[device.index] = trust_text(device, !device.simulator || selected(report, device.index));
     return report;
-}
-
-/// "device 0", "the 2 parts of device 0", "device 0 and device 1".
-std::string selection_text(const Selection& selection) {
-    std::vector<std::string> names;
-    for (const DeviceFacts& device : selection.devices)
-        if (device.sub_devices == 0) {
-            names.push_back(fmt::format("device {}", device.index));
-        } else if (device.sub_device == 0) {
-            names.push_back(fmt::format("the {} parts of device {}", device.sub_devices, device.index));
-        }
-    return fmt::format("{}", fmt::join(names, " and "));
 }
 
 void print_text(const Report& report) {
@@ -88,10 +101,22 @@ void print_text(const Report& report) {
                        d.index, type_name(d.type), d.name, name_width, d.driver_version, driver_width, d.compute_units,
                        d.native_float_width, size_text(d.global_bytes), size_text(d.max_alloc_bytes), report.trust.at(d.index));
     }
-    if (report.selection) fmt::print("\nclvr uses {}: {}.\n", selection_text(*report.selection), report.selection->rule);
+    if (!report.selection) return;
+    fmt::print("\n");
+    if (report.otherwise.empty()) fmt::print("clvr uses {}: {}.\n", selection_text(*report.selection), report.selection->rule);
+    for (const auto& [task, does] : tasks) {
+        if (report.otherwise.empty()) break;
+        const auto other = report.otherwise.find(task);
+        const Selection& s = other == report.otherwise.end() ? *report.selection : other->second;
+        fmt::print("clvr {} on {}: {}.\n", does, selection_text(s), s.rule);
+    }
+    for (const PlatformFacts& platform : report.platforms)
+        for (const DeviceFacts& d : platform.devices)
+            if (selected(report, d.index)) fmt::print("Tuning of device {}: {}.\n", d.index, tuning_in_force(d).rule);
 }
 
 nlohmann::json to_json(const DeviceFacts& d, const std::string& trust) {
+    const TuningInForce tuning = tuning_in_force(d);
     return {{"index", d.index},
             {"name", d.name},
             {"vendor", d.vendor},
@@ -114,7 +139,18 @@ nlohmann::json to_json(const DeviceFacts& d, const std::string& trust) {
             {"claims_fma", d.claims_fma},
             {"claims_correct_divide_sqrt", d.claims_correct_divide_sqrt},
             {"claims_denormals", d.claims_denormals},
+            {"tuning", {{"rule", tuning.rule}, {"values", tuning.values}}},
             {"trust", trust}};
+}
+
+nlohmann::json to_json(const Selection& selection) {
+    nlohmann::json devices = nlohmann::json::array();
+    for (const DeviceFacts& d : selection.devices) {
+        nlohmann::json device{{"index", d.index}, {"name", d.name}, {"compute_units", d.compute_units}};
+        if (d.sub_devices) device.update({{"sub_device", d.sub_device}, {"sub_devices", d.sub_devices}});
+        devices.push_back(device);
+    }
+    return {{"devices", devices}, {"rule", selection.rule}};
 }
 
 void print_json(const Report& report) {
@@ -125,15 +161,8 @@ void print_json(const Report& report) {
         platforms.push_back({{"name", platform.name}, {"vendor", platform.vendor}, {"version", platform.version}, {"devices", devices}});
     }
     nlohmann::json selection;
-    if (report.selection) {
-        nlohmann::json devices = nlohmann::json::array();
-        for (const DeviceFacts& d : report.selection->devices) {
-            nlohmann::json device{{"index", d.index}, {"name", d.name}, {"compute_units", d.compute_units}};
-            if (d.sub_devices) device.update({{"sub_device", d.sub_device}, {"sub_devices", d.sub_devices}});
-            devices.push_back(device);
-        }
-        selection = {{"devices", devices}, {"rule", report.selection->rule}};
-    }
+    if (report.selection) selection = to_json(*report.selection);
+    for (const auto& [task, other] : report.otherwise) selection["tasks"][task] = to_json(other);
     fmt::print("{}\n", nlohmann::json{{"platforms", platforms}, {"selection", selection}}.dump(2, ' ', false,
                                                                                                nlohmann::json::error_handler_t::replace));
 }

@@ -118,7 +118,7 @@ void add_eval_command(CLI::App& app) {
     c->add_option("--exposure", o->tonemap.exposure, "Report: exposure in stops [0]");
     c->add_option("--tonemap", o->tonemap.curve, "Report: filmic, aces, reinhard or none [filmic]");
     c->add_flag("--json", o->json, "Write JSON with the measures of every view");
-    add_device_options(*c, o->device);
+    add_device_options(*c, o->device, "denoise");
     c->callback([o] { eval(*o); });
 }
 

@@ -230,7 +230,7 @@ void add_experiment_command(CLI::App& app) {
     c->add_option("--batch", o->batch, "Patches a step [128, 8, 4]")->group("Training");
     c->add_option("--patch", o->patch, "Width and height of a patch [256, 128, 64]")->group("Training");
     c->add_option("--lr", o->learning_rate, "Learning rate of Adam [0.0001 constant; 0.001 along a cosine]")->group("Training");
-    add_device_options(*c, o->picture.devices);
+    add_device_options(*c, o->picture.devices, "train");
     c->callback([o, c] { experiment(*o, command_text(*c)); });
 }
 

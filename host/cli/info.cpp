@@ -86,7 +86,7 @@ Report make_report(const Options& o) {
     Report r;
     std::vector<Device> devices;
     try {
-        const Selection selection = select_devices(o.selector);
+        const Selection selection = select_devices(o.selector, "render");
         for (const DeviceFacts& facts : selection.devices) devices.push_back(Device::open(facts));
         r.rule = selection.rule;
     } catch (const Error& e) {

@@ -156,7 +156,7 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_flag("--orthographic", o.orthographic, "Camera: parallel projection")->group("Camera");
 
     add_volume_options(c, o.volume);
-    add_device_options(c, o.devices);
+    add_device_options(c, o.devices, "render");
 }
 
 void add_render_options(CLI::App& c, RenderOptions& o) {

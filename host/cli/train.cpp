@@ -134,7 +134,7 @@ void add_train_command(CLI::App& app) {
     c->add_option("--kernel", o->kernel, "Size of the convolutions [5]")->group("Model");
     c->add_flag("--plain", o->plain, "Without exposure, albedo floor and opacity weights: the reference's preprocessing")->group("Model");
     c->add_flag("--no-demodulation", o->no_demodulation, "Without dividing the radiance by the albedo")->group("Model");
-    add_device_options(*c, o->device);
+    add_device_options(*c, o->device, "train");
     c->callback([o] { train(*o); });
 }
 

@@ -36,8 +36,9 @@ int packet_width(const Device& device) {
 }
 
 BrickLayout device_layout(const Device& device, const Classified& c) {
-    return brick_layout(*c.voxels, *c.grid, c.majorants, device.tunable("brick_log2", brick_log2_edge(c.voxels->dims)),
-                        device.max_alloc_bytes());
+    constexpr int usual = 5;
+    const int by_dims = brick_log2_edge(c.voxels->dims), log2_edge = by_dims == usual ? device.tunable("brick_log2", usual) : by_dims;
+    return brick_layout(*c.voxels, *c.grid, c.majorants, log2_edge, device.max_alloc_bytes());
 }
 
 DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& params) {

@@ -14,8 +14,8 @@ struct Classified {
     std::vector<float> majorants;
 };
 
-/// Where the bricks of a classified volume go on a device. Brick edge: tunable "brick_log2" (default
-/// brick_log2_edge).
+/// Where the bricks of a classified volume go on a device. Brick edge: tunable "brick_log2" (default 5), but what brick_log2_edge says for
+/// thin volumes.
 BrickLayout device_layout(const Device& device, const Classified& c);
 
 class DeviceVolume {

@@ -177,6 +177,19 @@ TEST(Remembered, SavedAndRecalled) {
     EXPECT_FALSE(recall(load_remembered().value(), devices)) << "one of them is gone";
 }
 
+TEST(Remembered, ByTask) {
+    const TemporaryFolder folder;
+    const ScopedVariable config("XDG_CONFIG_HOME", folder.path().string());
+    save_remembered({{"p", "general", 0, 0}}, {{"train", {{"p", "trainer", 0, 0}, {"p", "helper", 1, 2}}}});
+    EXPECT_EQ(load_remembered()->at(0).name, "general");
+    EXPECT_EQ(load_remembered("render")->at(0).name, "general");
+    ASSERT_EQ(load_remembered("train")->size(), 2u);
+    EXPECT_EQ(load_remembered("train")->at(1).sub_devices, 2);
+    folder.write("clvr/device.json", R"({"devices": [{"platform": "p", "name": "n"}], "tasks": {"train": []}})");
+    EXPECT_THROW(load_remembered("train"), Error);
+    EXPECT_EQ(load_remembered("render")->at(0).name, "n");
+}
+
 TEST(Remembered, BrokenFileIsNamed) {
     const TemporaryFolder folder;
     const ScopedVariable config("XDG_CONFIG_HOME", folder.path().string());

@@ -1,0 +1,146 @@
+// The `clvr-bench` program: measures every device on clvr's real stages, tunes, recommends, remembers.
+#include "host/io/atomic_file.hpp"
+#include "runtime/error.hpp"
+#include "runtime/remembered.hpp"
+#include "runtime/select.hpp"
+#include "tools/bench/bench.hpp"
+#include "tools/bench/stage.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+
+namespace clvr::bench {
+namespace {
+
+struct Options {
+    std::string selector, json, html;
+    std::vector<std::string> stages;
+    bool quick = false, tune = false, save = false, explain = false, child = false, hashes = false, tiny = false;
+};
+
+/// What --save keeps: a device per task; the general one is that for rendering.
+void save(const Report& report, const std::vector<DeviceFacts>& all) {
+    RememberedByTask by_task;
+    std::vector<RememberedDevice> general;
+    for (const Recommendation& r : report.recommendations) {
+        if (r.devices.empty()) throw Error(ErrorKind::device, fmt::format("nothing to remember for {}: {}", r.task, r.reason));
+        std::vector<DevicePart> parts;
+        for (const std::size_t d : r.devices) parts.push_back({static_cast<std::size_t>(report.devices[d].facts.index), 0});
+        const std::vector<RememberedDevice> devices = remember(parts, all);
+        if (general.empty())
+            general = devices;
+        else
+            by_task[r.task] = devices;
+    }
+    save_remembered(general, by_task);
+}
+
+void print_recommendations(const Report& report, bool explain) {
+    for (const Recommendation& r : report.recommendations) {
+        std::string names;
+        for (const std::size_t d : r.devices)
+            names += fmt::format("{}device {}", names.empty() ? "" : " and ", report.devices[d].facts.index);
+        fmt::print("{}: {}: {}.\n", r.task, names.empty() ? "nothing" : names, r.reason);
+        if (!explain) continue;
+        for (const std::string& line : r.evidence) fmt::print("    {}\n", line);
+    }
+    if (!explain) return;
+    for (const DeviceRows& d : report.devices) {
+        const auto shipped = shipped_tuning(d.facts);
+        const auto measured = measured_tuning(d.facts);
+        if (!shipped && !measured) continue;
+        fmt::print("tuning of device {}: {}\n", d.facts.index, d.tuning);
+        for (const std::string& line : measured ? measured->evidence : shipped->tuning.evidence) fmt::print("    {}\n", line);
+    }
+}
+
+void bench_devices(const Options& o) {
+    for (const std::string& file : {o.json, o.html})
+        if (!file.empty()) check_writable(file); // before minutes of measuring
+    for (const std::string& name : o.stages) stage_named(name);
+    const std::vector<DeviceFacts> all = list_devices();
+    std::vector<DeviceFacts> devices = all;
+    if (!o.selector.empty() || all.empty()) devices = select_devices(o.selector).devices; // says what is wrong where there is none
+    if (o.save && (!o.stages.empty() || o.tiny ||
+                   std::any_of(devices.begin(), devices.end(), [](const DeviceFacts& d) { return d.sub_devices != 0; })))
+        throw Error(ErrorKind::usage, "--save needs whole devices and all stages; leave --stage and parts such as cpu/2 away");
+    Child child({std::filesystem::read_symlink("/proc/self/exe").string(), "--child"});
+    const Report report = run_bench(devices, {o.quick, o.tune, o.tiny, o.stages}, child, [](const std::string& text) {
+        fmt::print("{}", text);
+        std::fflush(stdout);
+    });
+    if (o.hashes)
+        for (const DeviceRows& d : report.devices)
+            for (const Row& r : d.rows) fmt::print("{:<16} {:<8} {}\n", r.stage, r.size, r.hash.empty() ? r.reason : r.hash);
+    if (o.stages.empty()) print_recommendations(report, o.explain);
+    const auto write = [](const std::string& file, const std::string& text) {
+        if (!file.empty()) write_atomically(file, text.data(), text.size());
+    };
+    write(o.json, report_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    write(o.html, report_html(report));
+    if (o.save) save(report, all);
+}
+
+int fail(const std::string& what, ErrorKind kind) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "clvr-bench: %s\n", what.c_str());
+    return static_cast<int>(kind);
+}
+
+int run(int argc, char** argv) {
+    Options o;
+    CLI::App app("clvr-bench measures every OpenCL device on clvr's real stages, checks its results, tunes, recommends and remembers.");
+    app.name("clvr-bench");
+    app.set_version_flag("--version", CLVR_VERSION);
+    app.add_option("--device", o.selector,
+                   "Only this: an index, cpu, gpu, part of a name, cpu/2, several joined by +; every device otherwise")
+        ->type_name("SEL");
+    app.add_option("--stage", o.stages, "Only this stage, as the table names it; may be given again")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    app.add_flag("--quick", o.quick, "Shorter measurements, and a tuning within a minute of what matters most");
+    app.add_flag("--tune", o.tune, "Find the fastest tunables of each device (at most 5 minutes each) and keep them for all commands");
+    app.add_flag("--save", o.save, "Remember the recommended devices for the next runs of clvr");
+    app.add_flag("--explain", o.explain, "Print the evidence for what is recommended");
+    app.add_option("--json", o.json, "Write all numbers as JSON")->type_name("FILE");
+    app.add_option("--html", o.html, "Write a page with tables, bars and rooflines")->type_name("FILE");
+    app.add_flag("--child", o.child, "Serve requests on stdin (for clvr-bench itself)")->group("");
+    app.add_flag("--tiny", o.tiny, "The sizes of simulators on every device (for tests)")->group("");
+    app.add_flag("--hashes", o.hashes, "Print the hash of each result")->group("");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error); // help and version
+        std::string what = error.what();
+        std::replace(what.begin(), what.end(), '\n', ' ');
+        return fail(what + " (see clvr-bench --help)", ErrorKind::usage);
+    }
+    if (o.child) return serve();
+    bench_devices(o);
+    return 0;
+}
+
+} // namespace
+} // namespace clvr::bench
+
+int main(int argc, char** argv) {
+    auto logger = spdlog::stderr_color_mt("clvr-bench");
+    logger->set_pattern("%n: %^%l%$: %v");
+    spdlog::set_default_logger(std::move(logger));
+    try {
+        return clvr::bench::run(argc, argv);
+    } catch (const clvr::Error& error) {
+        return clvr::bench::fail(error.line(), error.kind());
+    } catch (const std::bad_alloc&) {
+        return clvr::bench::fail("out of memory", clvr::ErrorKind::memory);
+    } catch (const std::exception& error) {
+        return clvr::bench::fail(std::string("internal error: ") + error.what(), clvr::ErrorKind::internal);
+    }
+}

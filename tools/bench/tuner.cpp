@@ -1,0 +1,108 @@
+#include "tools/bench/tuner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace clvr::bench {
+namespace {
+
+constexpr double worthwhile = 1.02; // faster than this, and by more than the spread, or it is noise
+constexpr double no_loss = 0.99;    // in the end nothing may be slower than this
+
+std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+/// The line of evidence of a candidate.
+std::string line_of(const std::string& name, int value, const Knob& knob, const Verdict& v, int base) {
+    if (v.status != Status::ok) return fmt::format("{} {}: {}: {}", name, value, status_name(v.status), v.reason);
+    return fmt::format("{} {}: {:.3f} x as fast as {} in {} (+-{:.1f} %){}", name, value, v.speedup, base, joined(knob.stages),
+                       100 * v.spread, v.pruned ? ", given up early" : "");
+}
+
+class Walk {
+public:
+    Walk(const Evaluate& evaluate, const Clock& clock, double limit, TunedDevice& result)
+        : evaluate_(evaluate), clock_(clock), deadline_(clock() + limit), result_(result) {}
+
+    bool out_of_time() const { return clock_() >= deadline_; }
+
+    /// Moves best[knob] to the fastest value reached.
+    void along(const Knob& knob, Tunables& best) {
+        const auto given = best.find(knob.name);
+        const int start = given == best.end() ? knob.fallback : given->second;
+        const auto above = std::upper_bound(knob.values.begin(), knob.values.end(), start);
+        const auto below = std::lower_bound(knob.values.begin(), knob.values.end(), start);
+        const bool better = one_way(knob, std::vector<int>(std::make_reverse_iterator(below), knob.values.rend()), start, best);
+        if (!better) one_way(knob, std::vector<int>(above, knob.values.end()), start, best);
+    }
+
+private:
+    const Evaluate& evaluate_;
+    const Clock& clock_;
+    double deadline_;
+    TunedDevice& result_;
+
+    bool one_way(const Knob& knob, const std::vector<int>& values, int start, Tunables& best) {
+        bool better = false;
+        int base = start;
+        for (const int value : values) {
+            if (out_of_time()) {
+                if (result_.left_out.empty() || result_.left_out.back() != knob.name) result_.left_out.push_back(knob.name);
+                break;
+            }
+            Tunables candidate = best;
+            candidate[knob.name] = value;
+            const Verdict v = evaluate_(best, candidate, knob.stages);
+            ++result_.tried;
+            result_.refused += v.status != Status::ok;
+            result_.tuning.evidence.push_back(line_of(knob.name, value, knob, v, base));
+            if (v.status != Status::ok) break;
+            if (v.speedup < worthwhile + v.spread) {
+                if (v.speedup < 1 / worthwhile) break; // it gets slower that way
+                continue;
+            }
+            best = candidate;
+            base = value;
+            better = true;
+        }
+        return better;
+    }
+};
+
+} // namespace
+
+TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Evaluate& evaluate, const Clock& clock,
+                 double limit_seconds) {
+    TunedDevice result;
+    Walk walk(evaluate, clock, limit_seconds, result);
+    Tunables best = start;
+    for (const Knob& knob : knobs) walk.along(knob, best);
+
+    // What came of it stage by stage, each change of one at a time having been held against noise only.
+    std::set<std::string> stages;
+    for (const Knob& knob : knobs)
+        if (best != start) stages.insert(knob.stages.begin(), knob.stages.end());
+    for (const std::string& stage : stages) {
+        if (best == start) break;
+        const Verdict v = evaluate(start, best, {stage});
+        result.tuning.evidence.push_back(
+            v.status == Status::ok
+                ? fmt::format("in the end: {:.3f} x as fast as before in {} (+-{:.1f} %)", v.speedup, stage, 100 * v.spread)
+                : fmt::format("in the end: {} in {}: {}", status_name(v.status), stage, v.reason));
+        if (v.status == Status::ok && v.speedup >= no_loss) continue;
+        for (const Knob& knob : knobs) {
+            if (std::find(knob.stages.begin(), knob.stages.end(), stage) == knob.stages.end()) continue;
+            const auto before = start.find(knob.name);
+            const auto now = best.find(knob.name);
+            if (now == best.end() || (before != start.end() && before->second == now->second)) continue;
+            result.tuning.evidence.push_back(fmt::format("{} goes back: {} lost", knob.name, stage));
+            best.erase(now);
+            if (before != start.end()) best.insert(*before);
+        }
+    }
+    result.tuning.values = best;
+    return result;
+}
+
+} // namespace clvr::bench
