@@ -8,7 +8,7 @@
 namespace clvr {
 
 void add_device_options(CLI::App& c, DeviceOptions& o) {
-    c.add_option("--device", o.selector, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +")
+    c.add_option("--device", o.selector, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +, all")
         ->type_name("SEL")
         ->group("Device");
     c.add_option("--memory", o.memory, "Use at most so much device memory")->type_name("SIZE")->group("Device");
