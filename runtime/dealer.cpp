@@ -1,5 +1,8 @@
 #include "runtime/dealer.hpp"
 
+#include "runtime/check.hpp"
+
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -152,6 +155,20 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 } // namespace
 
+std::string display_name(const DeviceFacts& device) {
+    const std::string root = fmt::format("device {} \"{}\"", device.index, device.name);
+    return device.sub_devices ? fmt::format("part {}/{} of {}", device.sub_device + 1, device.sub_devices, root) : root;
+}
+
+bool is_same(Device& a, Device& b) { return a.queue()() == b.queue()(); }
+
+void copy(Device& device, const Buffer& from, Buffer& to, std::size_t bytes, std::size_t from_offset, std::size_t to_offset) {
+    if (from_offset > from.bytes() || bytes > from.bytes() - from_offset || to_offset > to.bytes() || bytes > to.bytes() - to_offset)
+        throw Error(ErrorKind::internal, fmt::format("a copy of {} bytes leaves a buffer", bytes), device.facts().name);
+    cl_check("copying on " + device.facts().name,
+             [&] { device.queue().enqueueCopyBuffer(from.handle(), to.handle(), from_offset, to_offset, bytes); });
+}
+
 bool is_device_failure(const Error& error) { return error.kind() == ErrorKind::device || error.kind() == ErrorKind::memory; }
 
 void Dealer::Speed::add(double measured) {
@@ -193,6 +210,24 @@ void Dealer::each(const Task& task) {
             drop(device, error);
         }
     }
+}
+
+void Dealer::compare(const std::string& what, const std::function<std::string(std::size_t)>& result) {
+    if (left().size() < 2) return;
+    std::map<std::string, std::vector<std::size_t>> who; // by result
+    each([&](std::size_t device) { who[result(device)].push_back(device); });
+    const std::size_t devices = left().size();
+    const auto most =
+        std::max_element(who.begin(), who.end(), [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });
+    if (2 * most->second.size() <= devices) {
+        std::string names;
+        for (const std::size_t d : left()) names += (names.empty() ? "" : ", ") + names_[d];
+        throw Error(ErrorKind::device,
+                    "compute different " + what + ", so one of them is wrong; take one alone, `clvr selftest` may tell which", names);
+    }
+    for (const auto& [value, those] : who)
+        for (const std::size_t d : those)
+            if (value != most->first) drop(d, Error(ErrorKind::device, "computes other " + what + " than the other devices", names_[d]));
 }
 
 void Dealer::deal(const std::string& label, std::uint32_t total, double cost, const std::vector<Portion>& portions, const Work& work) {

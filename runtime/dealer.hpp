@@ -11,6 +11,15 @@
 
 namespace clvr {
 
+/// How messages call a device: `device 0 "name"`, `part 1/2 of device 0 "name"`.
+std::string display_name(const DeviceFacts& device);
+
+/// Whether both are the same opened device.
+bool is_same(Device& a, Device& b);
+
+/// Enqueues on `device` a copy between buffers of its context, [bytes]; another device of it must have finished with them.
+void copy(Device& device, const Buffer& from, Buffer& to, std::size_t bytes, std::size_t from_offset, std::size_t to_offset);
+
 /// Whether an error says that a device (or its memory) failed, so that another one may do the work: kinds device and memory.
 bool is_device_failure(const Error& error);
 
@@ -37,6 +46,10 @@ public:
     /// device leaves the rest to another that will have done all of it sooner. The run of a device that fails is done anew by another one:
     /// `work` must give the same when it is repeated. Any other exception ends the deal and is thrown on.
     void deal(const std::string& label, std::uint32_t total, double cost, const std::vector<Portion>& portions, const Work& work);
+
+    /// Whether devices compute the same: those whose result(device) differs from that of more than half of the devices left are dropped.
+    /// Throws Error{device} when there is no such majority, naming the devices. `what` is computed, for the message: "different <what>".
+    void compare(const std::string& what, const std::function<std::string(std::size_t device)>& result);
 
     /// Leaves a device out and warns in one line that says why. Throws `error` when no other is left.
     void drop(std::size_t device, const Error& error);

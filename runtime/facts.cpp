@@ -101,11 +101,6 @@ std::string why_unusable(const DeviceFacts& device) {
     return {};
 }
 
-std::string display_name(const DeviceFacts& device) {
-    const std::string root = fmt::format("device {} \"{}\"", device.index, device.name);
-    return device.sub_devices ? fmt::format("part {}/{} of {}", device.sub_device + 1, device.sub_devices, root) : root;
-}
-
 const char* type_name(DeviceType type) { return type == DeviceType::cpu ? "cpu" : type == DeviceType::gpu ? "gpu" : "accelerator"; }
 
 std::vector<DeviceFacts> divide(const DeviceFacts& root, int parts) {

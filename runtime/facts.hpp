@@ -37,9 +37,6 @@ struct PlatformFacts {
 /// Why clvr cannot run on the device, in words; empty when it can.
 std::string why_unusable(const DeviceFacts& device);
 
-/// How messages call the device: `device 0 "name"`, `part 1/2 of device 0 "name"`.
-std::string display_name(const DeviceFacts& device);
-
 /// "cpu", "gpu" or "accelerator".
 const char* type_name(DeviceType type);
 

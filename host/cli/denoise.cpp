@@ -89,7 +89,8 @@ void write_shown(const Frame& frame, const std::string& output, const Tonemap& t
 
 void denoise(const Options& o) {
     if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr denoise");
-    if (o.spp < 0 || o.spp > largest_spp) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.spp, largest_spp), "--spp");
+    if (o.spp < 0 || o.spp > largest_spp)
+        throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.spp, largest_spp), "--spp");
     const DenoiserView view = view_of(o.show);
     for (const auto& path : o.outputs) check_frame_path(path);
     const Model model = read_model(o.model);

@@ -61,8 +61,8 @@ public:
     explicit FrameDenoiser(Model model) : model_(std::move(model)) {}
     Frame denoise(const Frame& frame, std::vector<Device> devices) {
         return on_first(devices, [&](Device& device) {
-            if (!denoiser_ || on_ != device.facts().handle()) denoiser_.emplace(device, model_);
-            on_ = device.facts().handle();
+            if (!denoiser_ || !is_same(*on_, device)) denoiser_.emplace(device, model_);
+            on_ = device;
             return denoiser_->denoise(frame);
         });
     }
@@ -70,7 +70,7 @@ public:
 private:
     Model model_;
     std::optional<Denoiser> denoiser_; // kept from view to view
-    cl_device_id on_ = nullptr;
+    std::optional<Device> on_;
 };
 
 /// Renders one view and writes it to all outputs. Returns the samples reached.
