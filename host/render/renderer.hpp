@@ -74,6 +74,7 @@ private:
     std::uint32_t numbers_;        // pixel numbers, in 4x4 blocks
     std::vector<std::string> warnings_;
 
+    void compare_devices();
     bool trace_pass(int first_sample, int samples, const PixelSums& before, PixelSums& after, const RenderControl& control);
     void trace(Frame& frame, const RenderControl& control);
     std::vector<Dealer::Portion> march_portions() const;

@@ -1,26 +1,9 @@
-// A scene that shows when a pixel is wrong, and two devices to render it.
+// A scene that shows when a pixel is wrong.
 #pragma once
 #include "tests/render/scenes.hpp"
+#include "tests/runtime/two_devices.hpp"
 
 namespace clvr::testing {
-
-/// Two equal parts of the device under test, or where it cannot be divided the device opened twice.
-inline std::vector<Device> open_two_devices() {
-    const DeviceFacts root = shared_device().facts();
-    std::vector<Device> devices;
-    if (root.max_sub_devices >= 2) {
-        for (const DeviceFacts& part : divide(root, 2)) devices.push_back(Device::open(part));
-    } else {
-        devices = {open_device(), open_device()};
-    }
-    return devices;
-}
-
-/// The same, opened once: for tests that set nothing on them.
-inline const std::vector<Device>& two_devices() {
-    static const std::vector<Device>* const devices = new std::vector<Device>(open_two_devices()); // never destroyed, see shared_device()
-    return *devices;
-}
 
 inline PreparedVolume wavy_volume() {
     return PreparedVolume(volume_of<std::uint8_t>({24, 20, 22}, [](int x, int y, int z) { return (x * 11 + y * 7 + z * 5) % 256; }));

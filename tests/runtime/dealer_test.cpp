@@ -136,5 +136,22 @@ TEST(Dealer, EachLeavesOutThoseThatFail) {
     EXPECT_THAT(warnings.text(), testing::HasSubstr("a failed and is left out"));
 }
 
+TEST(Dealer, ComparesAndLeavesOutTheOddOne) {
+    const Warnings warnings;
+    Dealer dealer(three);
+    dealer.compare("sums", [](std::size_t) { return "same"; });
+    EXPECT_EQ(dealer.left().size(), 3u);
+    dealer.compare("sums", [](std::size_t device) { return device == 1 ? "other" : "same"; });
+    EXPECT_EQ(dealer.left(), (std::vector<std::size_t>{0, 2}));
+    EXPECT_EQ(warnings.text(), "b failed and is left out, the other devices do its work: b: computes other sums than the other devices\n");
+    try {
+        dealer.compare("sums", [](std::size_t device) { return std::to_string(device); });
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::device);
+        EXPECT_THAT(e.line(), testing::HasSubstr("a, c: compute different sums"));
+    }
+}
+
 } // namespace
 } // namespace clvr
