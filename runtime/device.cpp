@@ -2,6 +2,7 @@
 
 #include "runtime/account.hpp"
 #include "runtime/check.hpp"
+#include "runtime/fault.hpp"
 #include "runtime/program.hpp"
 #include "runtime/quirks.hpp"
 #include "runtime/size.hpp"
@@ -39,6 +40,16 @@ struct Device::State {
     std::map<std::pair<std::string, Defines>, cl::Program> programs;
     std::deque<Pending> pending;
     Profile profile;
+    std::unique_ptr<Faults> faults; // null: none are put in
+
+    /// The driver's calls, through the faults.
+    template <class Call>
+    void drive(const std::string& what, const char* name, Call&& call) {
+        cl_check(doing(what), [&] {
+            if (faults) faults->call(name);
+            call();
+        });
+    }
 
     std::string doing(const std::string& what) const { return fmt::format("{} on {}", what, facts.name); }
 
@@ -87,6 +98,7 @@ Device Device::open(const DeviceFacts& facts, bool relaxed) {
         state.queue = cl::CommandQueue(state.context, facts.handle, CL_QUEUE_PROFILING_ENABLE);
         const cl_device_id parent = facts.sub_devices ? facts.handle.getInfo<CL_DEVICE_PARENT_DEVICE>()() : nullptr;
         state.account = account_of(parent ? parent : facts.handle());
+        state.faults = Faults::of(facts);
     });
     return device;
 }
@@ -131,7 +143,10 @@ Buffer Device::buffer(std::size_t bytes, std::string_view label) {
                     where);
     Buffer result;
     result.credit_ = std::shared_ptr<void>(account.get(), [account, bytes](void*) { account->give_back(bytes); });
-    result.handle_ = cl_check(where, [&] { return cl::Buffer(state_->context, CL_MEM_READ_WRITE, bytes); });
+    result.handle_ = cl_check(where, [&] {
+        if (state_->faults) state_->faults->allocate();
+        return cl::Buffer(state_->context, CL_MEM_READ_WRITE, bytes);
+    });
     result.bytes_ = bytes;
     return result;
 }
@@ -140,8 +155,8 @@ void Device::write(Buffer& to, const void* from, std::size_t bytes, std::size_t 
     state_->require_range(to, bytes, offset, "a write");
     if (bytes == 0) return;
     cl::Event event;
-    cl_check(state_->doing("writing"),
-             [&] { state_->queue.enqueueWriteBuffer(to.handle_, CL_TRUE, offset, bytes, from, nullptr, &event); });
+    state_->drive("writing", "clEnqueueWriteBuffer",
+                  [&] { state_->queue.enqueueWriteBuffer(to.handle_, CL_TRUE, offset, bytes, from, nullptr, &event); });
     state_->track(event, "write", {static_cast<double>(bytes), 0});
 }
 
@@ -149,22 +164,28 @@ void Device::read(const Buffer& from, void* to, std::size_t bytes, std::size_t o
     state_->require_range(from, bytes, offset, "a read");
     if (bytes == 0) return;
     cl::Event event;
-    cl_check(state_->doing("reading"), [&] { state_->queue.enqueueReadBuffer(from.handle_, CL_TRUE, offset, bytes, to, nullptr, &event); });
+    state_->drive("reading", "clEnqueueReadBuffer",
+                  [&] { state_->queue.enqueueReadBuffer(from.handle_, CL_TRUE, offset, bytes, to, nullptr, &event); });
+    if (state_->faults) state_->faults->read(to, bytes);
     state_->track(event, "read", {static_cast<double>(bytes), 0});
 }
 
 void Device::fill(Buffer& to, unsigned char value) {
     if (!to) return;
     cl::Event event;
-    cl_check(state_->doing("filling"), [&] { state_->queue.enqueueFillBuffer(to.handle_, value, 0, to.bytes(), nullptr, &event); });
+    state_->drive("filling", "clEnqueueFillBuffer",
+                  [&] { state_->queue.enqueueFillBuffer(to.handle_, value, 0, to.bytes(), nullptr, &event); });
     state_->track(event, "fill", {static_cast<double>(to.bytes()), 0});
 }
 
 Kernel Device::kernel(const std::string& stage, const Defines& defines) {
     const auto key = std::pair(stage, defines);
     auto found = state_->programs.find(key);
-    if (found == state_->programs.end())
-        found = state_->programs.emplace(key, build_program(state_->context, state_->facts, stage + ".cl", defines)).first;
+    if (found == state_->programs.end()) {
+        Defines all = defines;
+        if (state_->faults && state_->faults->breaks_build(stage)) all["__kernel"] = "broken_by_CLVR_FAULT";
+        found = state_->programs.emplace(key, build_program(state_->context, state_->facts, stage + ".cl", all)).first;
+    }
     Kernel kernel;
     kernel.label_ = stage.substr(stage.rfind('/') + 1);
     cl_check(state_->doing("entry point " + kernel.label_), [&] {
@@ -191,13 +212,14 @@ void Device::enqueue(Kernel& k, Range global, Range local, Work work) {
     const cl::NDRange rounded(rounded_up(global.x, local.x), rounded_up(global.y, local.y), rounded_up(global.z, local.z));
     cl::Event event;
     cl_check(state_->doing(k.label_), [&] {
+        if (state_->faults) state_->faults->launch(k.label_);
         state_->queue.enqueueNDRangeKernel(k.handle_, cl::NullRange, rounded, cl::NDRange(local.x, local.y, local.z), nullptr, &event);
     });
     state_->track(event, k.label_, work);
 }
 
 void Device::finish() {
-    cl_check(state_->doing("finishing"), [&] { state_->queue.finish(); });
+    state_->drive("finishing", "clFinish", [&] { state_->queue.finish(); });
     state_->resolve(state_->pending.size());
 }
 

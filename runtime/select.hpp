@@ -32,8 +32,8 @@ struct Choice {
 Choice choose_devices(const std::vector<PlatformFacts>& platforms, const Wishes& wishes, const Fastest& fastest);
 
 /// Resolves the selector: `selector` if not empty, else CLVR_DEVICE, else what was remembered, else the fastest by a short probe whose
-/// answer is stored per device list and driver version. A selector is an index, `cpu`, `gpu`, part of a name, `cpu/2`, or several joined by
-/// `+`. `task`, such as "render", asks for what was remembered for it. Throws Error{device} when nothing matches or a name
+/// answer is stored per device list and driver version. A selector is an index, `cpu`, `gpu`, part of a name, `cpu/2`, several joined by
+/// `+`, or `all`. `task`, such as "render", asks for what was remembered for it. Throws Error{device} when nothing matches or a name
 /// matches several (the message lists them), or when there is no platform or no device.
 Selection select_devices(const std::string& selector = {}, const std::string& task = {});
 

@@ -11,7 +11,7 @@
 namespace clvr {
 namespace {
 
-constexpr const char* grammar = "write an index, cpu, gpu or part of a name, with /2 for two equal parts, several joined by +";
+constexpr const char* grammar = "write an index, cpu, gpu or part of a name, with /2 for two equal parts, several joined by +, or all";
 
 std::string lower(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -63,6 +63,13 @@ std::size_t resolve_one(const std::string& name, const std::string& where, const
     return found.front();
 }
 
+std::vector<std::size_t> all_usable(const std::string& where, const std::vector<DeviceFacts>& devices) {
+    std::vector<std::size_t> found = default_candidates(devices);
+    if (found.empty())
+        throw Error(ErrorKind::device, "\"all\" means usable devices that are no simulators; there is none (see clvr devices)", where);
+    return found;
+}
+
 } // namespace
 
 std::vector<std::size_t> default_candidates(const std::vector<DeviceFacts>& devices) {
@@ -84,15 +91,17 @@ std::vector<DevicePart> resolve_selector(const std::string& selector, const std:
             if (sub_devices < 2) throw malformed();
             name.erase(slash);
         }
-        if (name.empty()) throw malformed();
-        const DevicePart part{resolve_one(name, where, devices, fastest), sub_devices};
-        for (const DevicePart& other : parts)
-            if (other.device == part.device)
-                throw Error(ErrorKind::usage,
-                            fmt::format("\"{}\" names device {} twice; use /2 for two equal parts of one device", selector,
-                                        devices[part.device].index),
-                            where);
-        parts.push_back(part);
+        if (name.empty() || (name == "all" && sub_devices)) throw malformed();
+        for (const std::size_t device :
+             name == "all" ? all_usable(where, devices) : std::vector{resolve_one(name, where, devices, fastest)}) {
+            for (const DevicePart& other : parts)
+                if (other.device == device)
+                    throw Error(ErrorKind::usage,
+                                fmt::format("\"{}\" names device {} twice; use /2 for two equal parts of one device", selector,
+                                            devices[device].index),
+                                where);
+            parts.push_back({device, sub_devices});
+        }
         start = end + 1;
     }
     return parts;

@@ -21,8 +21,8 @@ using Fastest = std::function<std::size_t(const std::vector<std::size_t>& candid
 std::vector<std::size_t> default_candidates(const std::vector<DeviceFacts>& devices);
 
 /// An index; `cpu` or `gpu` (the fastest of them); part of a device's or platform's name in any case; each with `/n` for n equal parts;
-/// several joined by `+`. `where` names the option or variable that the selector comes from. Throws Error{usage} for a malformed selector
-/// or a device named twice, Error{device} when nothing matches or a name matches several.
+/// several joined by `+`; `all` is every device of default_candidates(). `where` names the option or variable that the selector comes from.
+/// Throws Error{usage} for a malformed selector or a device named twice, Error{device} when nothing matches or a name matches several.
 std::vector<DevicePart> resolve_selector(const std::string& selector, const std::string& where, const std::vector<DeviceFacts>& devices,
                                          const Fastest& fastest);
 

@@ -1,6 +1,7 @@
 #include "runtime/speed.hpp"
 
 #include "runtime/device.hpp"
+#include "runtime/fault.hpp"
 #include "runtime/folders.hpp"
 #include "runtime/sha256.hpp"
 
@@ -27,6 +28,7 @@ std::filesystem::path stored_path(const std::filesystem::path& folder, const std
 double probe_speed_ms(const DeviceFacts& facts) {
     constexpr cl_uint lanes = 1u << 18, entries = 1u << 20, steps = 32;
     constexpr int repetitions = 4; // the first one warms up
+    const ProbeScope probing;
     Device device = Device::open(facts);
     std::vector<cl_uint> table(entries);
     std::iota(table.begin(), table.end(), 12345u);

@@ -5,7 +5,7 @@
 #include "host/io/frame_file.hpp"
 #include "host/io/model_file.hpp"
 #include "host/render/scene.hpp"
-#include "runtime/error.hpp"
+#include "runtime/dealer.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -89,24 +89,30 @@ void write_shown(const Frame& frame, const std::string& output, const Tonemap& t
 
 void denoise(const Options& o) {
     if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr denoise");
-    if (o.spp < 0 || o.spp > largest_spp) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.spp, largest_spp), "--spp");
+    if (o.spp < 0 || o.spp > largest_spp)
+        throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.spp, largest_spp), "--spp");
     const DenoiserView view = view_of(o.show);
     for (const auto& path : o.outputs) check_frame_path(path);
     const Model model = read_model(o.model);
     Frame frame = read_exr(o.input);
     if (o.spp > 0) frame.attributes["clvr.spp"] = std::to_string(o.spp);
     for (const auto& mapping : o.map) map_channels(frame, mapping, o.input);
-    Device device = open_device(o.device);
-    Denoiser denoiser(device, model);
+    std::vector<Device> devices = open_devices(o.device);
+    std::size_t repaired = 0;
     try {
-        frame = denoiser.denoise(frame, view);
+        frame = on_first(devices, [&](Device& device) {
+            Denoiser denoiser(device, model);
+            Frame clean = denoiser.denoise(frame, view);
+            repaired = denoiser.repaired();
+            return clean;
+        });
     } catch (const Error& e) {
         throw e.kind() == ErrorKind::input ? Error(e.kind(), e.what(), o.input) : e;
     }
-    if (denoiser.repaired() > 0) spdlog::warn("{}: {} values are not finite; taken as 0", o.input, denoiser.repaired());
+    if (repaired > 0) spdlog::warn("{}: {} values are not finite; taken as 0", o.input, repaired);
     for (const auto& path : o.outputs) write_frame(frame, o.tonemap, path);
     if (!o.show.empty()) write_shown(frame, o.outputs.front(), o.tonemap);
-    print_profiles(o.device, {device});
+    print_profiles(o.device, {devices.front()});
 }
 
 } // namespace

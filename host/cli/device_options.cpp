@@ -1,4 +1,5 @@
 #include "host/cli/device_options.hpp"
+#include "runtime/dealer.hpp"
 #include "runtime/select.hpp"
 #include "runtime/size.hpp"
 
@@ -9,7 +10,7 @@ namespace clvr {
 
 void add_device_options(CLI::App& c, DeviceOptions& o, const std::string& task) {
     o.task = task;
-    c.add_option("--device", o.selector, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +")
+    c.add_option("--device", o.selector, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +, all")
         ->type_name("SEL")
         ->group("Device");
     c.add_option("--memory", o.memory, "Use at most so much device memory")->type_name("SIZE")->group("Device");
@@ -20,8 +21,15 @@ void add_device_options(CLI::App& c, DeviceOptions& o, const std::string& task) 
 std::vector<Device> open_devices(const DeviceOptions& o) {
     const Selection selection = select_devices(o.selector, o.task);
     std::vector<Device> devices;
+    std::size_t refused = 0;
     for (const auto& facts : selection.devices) {
-        devices.push_back(Device::open(facts, o.relaxed));
+        try {
+            devices.push_back(Device::open(facts, o.relaxed));
+        } catch (const Error& error) { // as one that fails later: without it, while there are others
+            if (!is_device_failure(error) || ++refused == selection.devices.size()) throw;
+            spdlog::warn("{} is left out: {}", display_name(facts), error.line().substr(0, error.line().find('\n')));
+            continue;
+        }
         if (!o.memory.empty()) devices.back().set_memory_limit(parse_size(o.memory, "--memory"));
         spdlog::debug("device {}: {} ({})", facts.index, facts.name, selection.rule);
     }

@@ -18,7 +18,8 @@ struct DeviceOptions {
 /// Adds --device, --memory, --relaxed and --profile for a command of that task.
 void add_device_options(CLI::App& command, DeviceOptions& options, const std::string& task);
 
-/// Opens what the options select (all of them, or the first alone), with its memory limit. Throws Error.
+/// Opens what the options select, with its memory limit: all of them (of several, one that cannot be opened is left out with a warning), or
+/// the first alone. Throws Error.
 std::vector<Device> open_devices(const DeviceOptions& options);
 Device open_device(const DeviceOptions& options);
 

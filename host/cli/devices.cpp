@@ -190,7 +190,7 @@ void add_devices_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("devices", "What OpenCL offers here, and which device clvr will use and why");
     command
         ->add_option("--device", options->selector,
-                     "Show what this selector chooses: an index, cpu, gpu, part of a name, cpu/2, several joined by +")
+                     "Show what this selector chooses: an index, cpu, gpu, part of a name, cpu/2, several joined by +, all")
         ->type_name("SEL");
     command->add_flag("--json", options->json, "Write JSON");
     command->callback([options] { devices_command(*options); });

@@ -78,7 +78,8 @@ void pairs(const Options& o) {
     std::vector<Device> devices = open_devices(o.scene.devices);
     const Scene& first = plan.scenes.front();
     const EnvironmentTables environment = read_environment(first);
-    const PreparedVolume volume(open_volume(first.volume, reading_options(first), devices.front()));
+    const PreparedVolume volume(
+        on_first(devices, [&](Device& device) { return open_volume(first.volume, reading_options(first), device); }));
     settle(plan, volume);
     begin_pairs_folder(o.folder, plan);
 

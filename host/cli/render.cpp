@@ -55,8 +55,26 @@ void add_provenance(Frame& frame, const Scene& scene, const std::vector<Device>&
     frame.attributes["clvr.kernels.sha256"] = kernels_sha256();
 }
 
+/// Denoises on the first device that can.
+class FrameDenoiser {
+public:
+    explicit FrameDenoiser(Model model) : model_(std::move(model)) {}
+    Frame denoise(const Frame& frame, std::vector<Device> devices) {
+        return on_first(devices, [&](Device& device) {
+            if (!denoiser_ || !is_same(*on_, device)) denoiser_.emplace(device, model_);
+            on_ = device;
+            return denoiser_->denoise(frame);
+        });
+    }
+
+private:
+    Model model_;
+    std::optional<Denoiser> denoiser_; // kept from view to view
+    std::optional<Device> on_;
+};
+
 /// Renders one view and writes it to all outputs. Returns the samples reached.
-int render_view(Renderer& renderer, Denoiser* denoiser, const Scene& scene, const RenderOptions& o, const std::vector<Device>& devices,
+int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene, const RenderOptions& o,
                 const std::atomic<bool>& interrupted, const std::vector<std::string>& outputs, const std::string& label) {
     Frame frame;
     {
@@ -75,8 +93,8 @@ int render_view(Renderer& renderer, Denoiser* denoiser, const Scene& scene, cons
     }
     Scene made = scene;
     made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
-    if (denoiser) frame = denoiser->denoise(frame);
-    add_provenance(frame, made, devices);
+    if (denoiser) frame = denoiser->denoise(frame, renderer.devices());
+    add_provenance(frame, made, renderer.devices());
     for (const auto& path : outputs) write_frame(frame, {made.tonemap, made.exposure}, path);
     return made.spp;
 }
@@ -100,7 +118,8 @@ void render(const RenderOptions& o) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const EnvironmentTables environment = read_environment(scene);
     std::vector<Device> devices = open_devices(o.devices);
-    const PreparedVolume volume(open_volume(scene.volume, reading_options(scene), devices.front()));
+    const PreparedVolume volume(
+        on_first(devices, [&](Device& device) { return open_volume(scene.volume, reading_options(scene), device); }));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
         const std::string hash = volume_sha256(volume.voxels);
         if (!scene.volume_sha256.empty() && scene.volume_sha256 != hash)
@@ -120,8 +139,8 @@ void render(const RenderOptions& o) {
     Renderer renderer(devices, volume, wanted, environment, o.turntable > 0);
     for (const auto& w : renderer.warnings()) spdlog::warn("{}", w);
 
-    std::optional<Denoiser> denoiser;
-    if (model) denoiser.emplace(devices.front(), *model);
+    std::optional<FrameDenoiser> denoiser;
+    if (model) denoiser.emplace(*model);
     const double azimuth = scene.camera.azimuth;
     int reached = 0;
     for (int view = 0; view < std::max(1, o.turntable) && !interrupted; ++view) {
@@ -132,7 +151,7 @@ void render(const RenderOptions& o) {
             scene.view = view;
             renderer.aim(scene.camera, scene.view);
         }
-        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, devices, interrupted, outputs,
+        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, interrupted, outputs,
                               o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
     }
     if (!o.save_scene.empty()) {

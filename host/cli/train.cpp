@@ -78,8 +78,7 @@ void train(Options o) {
     check_writable(o.output);
     const Model model = start_of(o);
     const std::atomic<bool>& interrupted = catch_interrupts();
-    Device device = open_device(o.device);
-    Trainer trainer(device, model, o.trainer, o.folders, o.validate, o.output, o.resume);
+    Trainer trainer(open_devices(o.device), model, o.trainer, o.folders, o.validate, o.output, o.resume);
     bool finished = false;
     {
         ProgressBar bar("training", false);
@@ -90,7 +89,7 @@ void train(Options o) {
             bar.update(p.done, note);
         });
     }
-    print_profiles(o.device, {device});
+    print_profiles(o.device, trainer.devices());
     if (!trainer.records().empty()) {
         const EpochRecord& last = trainer.records().back();
         spdlog::info("{} epochs, loss {:.6f}{}", trainer.records().size(), last.loss,

@@ -76,6 +76,7 @@ int render_pairs(std::vector<Device>& devices, const PreparedVolume& volume, con
             }
             ++done;
         }
+        if (renderer) devices = renderer->devices(); // without one that failed
     }
     return done;
 }

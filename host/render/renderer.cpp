@@ -8,10 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <exception>
-#include <mutex>
 #include <optional>
-#include <thread>
 
 namespace clvr {
 
@@ -78,16 +75,16 @@ void refuse_what_host_memory_cannot_hold(const Scene& scene) {
 /// One device's share of the work.
 struct Renderer::Worker {
     Device device;
-    DeviceVolume volume;
+    std::shared_ptr<const DeviceVolume> volume; // sub-devices of one context share it
     std::optional<LightTables> light;
     std::optional<PathTracer> tracer;
-    Worker(const Device& d, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& v)
-        : device(d), volume(device, c, layout, v) {}
+    std::optional<Marcher> marcher;
+    bool compared = false; // with the others
 };
 
 Renderer::Renderer(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment,
                    bool steady)
-    : scene_(scene), volume_(volume), environment_(environment), steady_(steady) {
+    : dealer_(devices), scene_(scene), volume_(volume), environment_(environment), steady_(steady) {
     validate(scene);
     refuse_what_host_memory_cannot_hold(scene);
     const Classified c = classify(volume, scene);
@@ -96,10 +93,18 @@ Renderer::Renderer(std::vector<Device> devices, const PreparedVolume& volume, co
                             "for the range of the values");
     outline_ = outline_of(c, scene);
     numbers_ = (scene.width + 3u) / 4 * ((scene.height + 3u) / 4) * 16;
-    for (Device& d : devices) {
-        const BrickLayout layout = device_layout(d, c);
-        workers_.push_back(std::make_unique<Worker>(d, c, layout, volume_params(scene, volume.voxels, volume.grid, c.table, layout)));
-    }
+    workers_.resize(devices.size());
+    dealer_.each([&](std::size_t k) {
+        Device& d = devices[k];
+        std::shared_ptr<const DeviceVolume> uploaded;
+        for (std::size_t other = 0; other < k; ++other)
+            if (workers_[other] && devices[other].context()() == d.context()()) uploaded = workers_[other]->volume;
+        if (!uploaded) {
+            const BrickLayout layout = device_layout(d, c);
+            uploaded = std::make_shared<DeviceVolume>(d, c, layout, volume_params(scene, volume.voxels, volume.grid, c.table, layout));
+        }
+        workers_[k] = std::make_unique<Worker>(Worker{d, uploaded, {}, {}, {}, false});
+    });
     aim(scene.camera, scene.view);
 }
 
@@ -107,10 +112,11 @@ void Renderer::aim(const Camera& camera, int view) {
     scene_.camera = camera;
     scene_.view = view;
     const shared::RenderParams params = render_params(scene_, volume_.voxels, resolve_view(scene_, outline_, steady_), environment_);
-    for (auto& w : workers_) {
-        w->tracer.reset();
-        w->light.emplace(w->device, params, environment_);
-    }
+    dealer_.each([&](std::size_t k) {
+        Worker& w = *workers_[k];
+        w.tracer.reset();
+        w.light.emplace(w.device, params, environment_);
+    });
 }
 
 void Renderer::turn_to(const Scene& scene) {
@@ -123,28 +129,10 @@ void Renderer::turn_to(const Scene& scene) {
 
 Renderer::~Renderer() = default;
 
-/// Deals runs of `tile` pixel numbers to the devices as they become free: work(worker, first, count), on a thread a device.
-template <class F>
-void Renderer::deal(std::uint32_t tile, F&& work) {
-    std::atomic<std::uint32_t> next{0};
-    std::mutex mutex;
-    std::exception_ptr failure;
-    const auto drive = [&](Worker& worker) {
-        try {
-            for (std::uint64_t first = next.fetch_add(tile); first < numbers_; first = next.fetch_add(tile))
-                work(worker, static_cast<std::uint32_t>(first),
-                     static_cast<std::uint32_t>(std::min<std::uint64_t>(tile, numbers_ - first)));
-        } catch (...) {
-            next = numbers_;
-            const std::lock_guard lock(mutex);
-            if (!failure) failure = std::current_exception();
-        }
-    };
-    std::vector<std::thread> threads;
-    for (std::size_t k = 1; k < workers_.size(); ++k) threads.emplace_back(drive, std::ref(*workers_[k]));
-    drive(*workers_.front());
-    for (auto& t : threads) t.join();
-    if (failure) std::rethrow_exception(failure);
+std::vector<Device> Renderer::devices() const {
+    std::vector<Device> devices;
+    for (const std::size_t k : dealer_.left()) devices.push_back(workers_[k]->device);
+    return devices;
 }
 
 Frame Renderer::render(const RenderControl& control) {
@@ -159,12 +147,54 @@ Frame Renderer::render(const RenderControl& control) {
     return frame;
 }
 
+/// Each device traces the same few pixels in the picture's middle: one that computes other bits than the others must not mix with them.
+void Renderer::compare_devices() {
+    if (std::exchange(workers_[dealer_.left().front()]->compared, true)) return;
+    const std::uint32_t count = std::min(256u, numbers_), first = (numbers_ - count) / 2;
+    dealer_.compare("pictures", [&](std::size_t k) {
+        PixelSums sums{std::vector<shared::float4>(count), std::vector<shared::float4>(count)};
+        workers_[k]->tracer->trace(first, count, 0, 2, sums, 0, never);
+        std::string bytes;
+        for (const auto* values : {&sums.mean, &sums.deviation})
+            bytes.append(reinterpret_cast<const char*>(values->data()), values->size() * sizeof(shared::float4));
+        return bytes;
+    });
+}
+
+/// Adds samples to all pixels: `before` becomes `after`. False when cancelled.
+bool Renderer::trace_pass(int first_sample, int samples, const PixelSums& before, PixelSums& after, const RenderControl& control) {
+    const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
+    std::vector<Dealer::Portion> portions(workers_.size());
+    for (const std::size_t k : dealer_.left()) {
+        const Worker& w = *workers_[k];
+        const std::uint32_t wave = w.tracer->pixels_per_wave(static_cast<std::uint32_t>(samples)), least = std::max(16u, wave / 256 * 16);
+        portions[k] = {least,
+                       std::max(least, static_cast<std::uint32_t>(std::max(16, w.device.tunable("tile_pixels", static_cast<int>(wave)))))};
+    }
+    std::uint32_t done = 0;
+    dealer_.deal("trace", numbers_, samples, portions, [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
+        // From `before`, which no device changes: what one that fails leaves behind does not count.
+        std::copy_n(before.mean.begin() + first, count, after.mean.begin() + first);
+        std::copy_n(before.deviation.begin() + first, count, after.deviation.begin() + first);
+        if (!workers_[k]->tracer->trace(first, count, static_cast<std::uint32_t>(first_sample), static_cast<std::uint32_t>(samples), after,
+                                        first, cancelled))
+            return;
+        const std::lock_guard lock(progress_);
+        done += count;
+        if (control.progress)
+            control.progress({(first_sample + samples * static_cast<double>(done) / numbers_) / scene_.spp, first_sample});
+    });
+    return !cancelled;
+}
+
 void Renderer::trace(Frame& frame, const RenderControl& control) {
     using clock = std::chrono::steady_clock;
     const auto begin = clock::now();
-    const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
-    for (auto& w : workers_)
-        if (!w->tracer) w->tracer.emplace(w->device, w->volume, *w->light, numbers_);
+    dealer_.each([&](std::size_t k) {
+        Worker& w = *workers_[k];
+        if (!w.tracer) w.tracer.emplace(w.device, *w.volume, *w.light, numbers_);
+    });
+    compare_devices();
 
     PixelSums sums{std::vector<shared::float4>(numbers_), std::vector<shared::float4>(numbers_)}, finished = sums;
     int reached = 0;
@@ -177,18 +207,7 @@ void Renderer::trace(Frame& frame, const RenderControl& control) {
             samples = std::min(samples, static_cast<int>(std::max(0.0, left / seconds_per_sample)));
             if (samples == 0) break;
         }
-        std::uint32_t tile = ~0u;
-        for (auto& w : workers_)
-            tile = std::min(
-                {tile, w->tracer->pixels_per_wave(samples), std::max(16u, numbers_ / static_cast<std::uint32_t>(4 * workers_.size()))});
-        tile = std::max(16, workers_.front()->device.tunable("tile_pixels", static_cast<int>(tile)));
-        std::atomic<std::uint32_t> done{0};
-        deal(tile, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
-            if (!w.tracer->trace(first, count, reached, samples, sums, first, cancelled)) return;
-            done += count;
-            if (control.progress) control.progress({(reached + samples * static_cast<double>(done) / numbers_) / scene_.spp, reached});
-        });
-        if (cancelled) break;
+        if (!trace_pass(reached, samples, finished, sums, control)) break;
         finished = sums;
         reached += samples;
         seconds_per_sample = std::chrono::duration<double>(clock::now() - start).count() / samples;
@@ -217,6 +236,10 @@ void Renderer::trace(Frame& frame, const RenderControl& control) {
     frame.attributes["clvr.spp"] = std::to_string(reached);
 }
 
+std::vector<Dealer::Portion> Renderer::march_portions() const {
+    return {workers_.size(), {Marcher::pixels_per_launch / 16, Marcher::pixels_per_launch}};
+}
+
 void Renderer::march(Frame& frame, bool features, const RenderControl& control) {
     static const std::vector<std::string> feature_names{"albedo.R", "albedo.G", "albedo.B",  "normal.X",        "normal.Y",
                                                         "normal.Z", "depth.Z",  "opacity.A", "depth.deviation", "depth.half"};
@@ -226,15 +249,19 @@ void Renderer::march(Frame& frame, bool features, const RenderControl& control) 
     const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
 
     std::vector<float> planes(names.size() * numbers_);
-    std::vector<std::unique_ptr<Marcher>> marchers;
-    for (auto& w : workers_) marchers.push_back(std::make_unique<Marcher>(w->device, w->volume, *w->light, kind, scene_.feature_samples));
-    deal(Marcher::pixels_per_launch, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
-        if (cancelled) return;
-        const auto index =
-            std::find_if(workers_.begin(), workers_.end(), [&](const auto& other) { return other.get() == &w; }) - workers_.begin();
-        marchers[index]->run(first, count, planes, numbers_, first);
-        if (control.progress) control.progress({0, 0});
+    dealer_.each([&](std::size_t k) {
+        Worker& w = *workers_[k];
+        w.marcher.emplace(w.device, *w.volume, *w.light, kind, scene_.feature_samples);
     });
+    dealer_.deal(features ? "features" : "march", numbers_, 1, march_portions(),
+                 [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
+                     if (cancelled) return;
+                     workers_[k]->marcher->run(first, count, planes, numbers_, first);
+                     const std::lock_guard lock(progress_);
+                     if (control.progress) control.progress({0, 0});
+                 });
+    for (auto& w : workers_)
+        if (w) w->marcher.reset();
     if (cancelled) throw Error(ErrorKind::interrupted, "interrupted before the features were done; nothing was saved");
     for (std::size_t p = 0; p < names.size(); ++p) {
         auto& channel = frame.channel(names[p]);
@@ -253,7 +280,8 @@ void Renderer::lay_background(Frame& frame) {
         std::fill(under.begin(), under.end(),
                   shared::float4{static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), 0});
     } else {
-        deal(Marcher::pixels_per_launch, [&](Worker& w, std::uint32_t first, std::uint32_t count) {
+        dealer_.deal("background", numbers_, 1, march_portions(), [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
+            Worker& w = *workers_[k];
             Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
             Buffer out = w.device.buffer(count * sizeof(shared::float4), "background");
             w.device.launch(kernel, {count}, kernel.group(64), {}, w.light->arguments(), first, count, out);

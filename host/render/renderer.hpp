@@ -4,11 +4,13 @@
 #include "host/render/environment.hpp"
 #include "host/render/scene.hpp"
 #include "host/volume/bricks.hpp"
+#include "runtime/dealer.hpp"
 #include "runtime/device.hpp"
 
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 namespace clvr {
@@ -32,11 +34,14 @@ struct PreparedVolume {
     explicit PreparedVolume(Voxels v) : voxels(std::move(v)), grid(majorant_grid(voxels)) {}
 };
 
+struct PixelSums;
+
 class Renderer {
 public:
-    /// Classifies the volume, frames the camera, uploads to every device. `volume` outlives the renderer. `environment` holds the tables of
-    /// the scene's image (empty without one). `steady` frames for a turntable (resolve_view). Adds to `warnings()` when nothing is visible.
-    /// Throws Error.
+    /// Classifies the volume, frames the camera, uploads to every device. A device that fails, now or while it renders, is left out with a
+    /// warning, and the others do its work; the last one's failure is thrown. `volume` outlives the renderer. `environment` holds the
+    /// tables of the scene's image (empty without one). `steady` frames for a turntable (resolve_view). Adds to `warnings()` when nothing
+    /// is visible. Throws Error.
     Renderer(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {},
              bool steady = false);
     ~Renderer();
@@ -53,9 +58,14 @@ public:
 
     const std::vector<std::string>& warnings() const { return warnings_; }
 
+    /// The devices that have not failed.
+    std::vector<Device> devices() const;
+
 private:
     struct Worker;
-    std::vector<std::unique_ptr<Worker>> workers_;
+    Dealer dealer_;
+    std::vector<std::unique_ptr<Worker>> workers_; // by device; null for one that failed at once
+    std::mutex progress_;
     Scene scene_;
     const PreparedVolume& volume_;
     EnvironmentTables environment_;
@@ -64,9 +74,10 @@ private:
     std::uint32_t numbers_;        // pixel numbers, in 4x4 blocks
     std::vector<std::string> warnings_;
 
-    template <class F>
-    void deal(std::uint32_t tile, F&& work);
+    void compare_devices();
+    bool trace_pass(int first_sample, int samples, const PixelSums& before, PixelSums& after, const RenderControl& control);
     void trace(Frame& frame, const RenderControl& control);
+    std::vector<Dealer::Portion> march_portions() const;
     void march(Frame& frame, bool features, const RenderControl& control);
     void lay_background(Frame& frame);
 };

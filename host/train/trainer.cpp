@@ -6,6 +6,7 @@
 #include "host/io/model_file.hpp"
 #include "host/train/checkpoint.hpp"
 #include "host/train/pairs.hpp"
+#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -75,7 +76,7 @@ std::string configuration_of(const Model& model, const TrainerConfig& c, const s
 std::string training_csv(const std::string& output) { return stem_of(output) + ".training.csv"; }
 
 struct Trainer::State {
-    Device device;
+    std::vector<Device> validators; // the first one that can validates
     TrainerConfig config;
     std::string output;
     TrainingStep step;
@@ -84,8 +85,8 @@ struct Trainer::State {
     std::vector<std::pair<Frame, Frame>> validation;
     Checkpoint checkpoint;
 
-    State(const Device& d, const Model& m, const TrainerConfig& c, const std::string& out)
-        : device(d), config(c), output(out), step(d, m, c.step) {
+    State(const std::vector<Device>& d, const Model& m, const TrainerConfig& c, const std::string& out)
+        : validators(d), config(c), output(out), step(d, m, c.step) {
         checkpoint.best = m;
     }
 
@@ -105,10 +106,17 @@ struct Trainer::State {
     }
 
     double validate_model() {
-        Denoiser denoiser(device, step.model());
-        double sum = 0;
-        for (const auto& [noisy, reference] : validation) sum += psnr(denoiser.denoise(noisy), reference);
-        return validation.empty() ? 0 : sum / static_cast<double>(validation.size());
+        if (validation.empty()) return 0;
+        std::vector<Device> left = step.devices();
+        const auto failed = [&](Device& d) { return std::none_of(left.begin(), left.end(), [&](Device& l) { return is_same(l, d); }); };
+        validators.erase(std::remove_if(validators.begin(), validators.end(), failed), validators.end());
+        if (validators.empty()) validators = left;
+        return on_first(validators, [&](Device& device) {
+            Denoiser denoiser(device, step.model());
+            double sum = 0;
+            for (const auto& [noisy, reference] : validation) sum += psnr(denoiser.denoise(noisy), reference);
+            return sum / static_cast<double>(validation.size());
+        });
     }
 
     /// Everything on disk, each file as a whole; the checkpoint last, so that it never claims what the others lack.
@@ -139,9 +147,9 @@ struct Trainer::State {
     }
 };
 
-Trainer::Trainer(const Device& device, const Model& model, const TrainerConfig& config, const std::vector<std::string>& folders,
-                 const std::string& validation_folder, const std::string& output, bool resume)
-    : state_(std::make_unique<State>(device, model, config, output)) {
+Trainer::Trainer(const std::vector<Device>& devices, const Model& model, const TrainerConfig& config,
+                 const std::vector<std::string>& folders, const std::string& validation_folder, const std::string& output, bool resume)
+    : state_(std::make_unique<State>(devices, model, config, output)) {
     State& s = *state_;
     const bool noisy_target = config.step.loss == Loss::noisy;
     std::vector<std::string> names;
@@ -179,6 +187,8 @@ Trainer::Trainer(const Device& device, const Model& model, const TrainerConfig& 
 Trainer::~Trainer() = default;
 
 const std::vector<EpochRecord>& Trainer::records() const { return state_->checkpoint.records; }
+
+std::vector<Device> Trainer::devices() const { return state_->step.devices(); }
 
 bool Trainer::run(const std::atomic<bool>& cancelled, const std::function<void(const TrainerProgress&)>& progress) {
     State& s = *state_;

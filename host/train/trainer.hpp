@@ -39,10 +39,13 @@ struct TrainerProgress {
 /// epoch. The state is the seed's alone: the same bits whether or not it was interrupted.
 class Trainer {
 public:
-    /// Reads the frames. `resume`: goes on from the checkpoint, which must be of the same configuration and data. Throws Error{input,
-    /// memory}.
-    Trainer(const Device& device, const Model& model, const TrainerConfig& config, const std::vector<std::string>& folders,
+    /// Reads the frames. Several devices give the same files as one, also where they were others before `resume`. `resume`: goes on from
+    /// the checkpoint, which must be of the same configuration and data. Throws Error{input, memory}.
+    Trainer(const std::vector<Device>& devices, const Model& model, const TrainerConfig& config, const std::vector<std::string>& folders,
             const std::string& validation_folder, const std::string& output, bool resume);
+    Trainer(const Device& device, const Model& model, const TrainerConfig& config, const std::vector<std::string>& folders,
+            const std::string& validation_folder, const std::string& output, bool resume)
+        : Trainer(std::vector<Device>{device}, model, config, folders, validation_folder, output, resume) {}
     ~Trainer();
 
     /// Trains to the end, or until `cancelled`: then finishes the step and saves. Returns whether it reached the end. Throws
@@ -50,6 +53,8 @@ public:
     bool run(const std::atomic<bool>& cancelled, const std::function<void(const TrainerProgress&)>& progress);
 
     const std::vector<EpochRecord>& records() const;
+    /// The devices that have not failed.
+    std::vector<Device> devices() const;
 
 private:
     struct State;

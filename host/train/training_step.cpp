@@ -1,6 +1,6 @@
 #include "host/train/training_step.hpp"
-#include "host/denoise/neural_grid.hpp"
-#include "host/train/gradients.hpp"
+#include "host/train/replica.hpp"
+#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -10,145 +10,161 @@ namespace clvr {
 
 namespace {
 
-/// A training image: its planes on the device, or on the host where the device is full.
-struct Image {
-    int width = 0, height = 0;
-    shared::SourceParams params{};
-    Buffer on_device;
-    std::vector<float> on_host;
+/// Which device did a patch, and its row where that device has a context of its own.
+struct PatchRow {
+    std::size_t device = 0;
+    std::vector<float> gradient;
+    float loss = 0;
 };
-
-constexpr cl_uint loss_slots = 1024; // steps whose losses wait on the device
-
-/// x^n by squaring: the same bits everywhere, which pow does not promise.
-double power(double x, std::int64_t n) {
-    double result = 1;
-    for (; n > 0; n /= 2, x *= x)
-        if (n % 2) result *= x;
-    return result;
-}
 
 } // namespace
 
+/// One device enqueues step after step. Several share a step's patches; the first one left, the leader, sums their gradients in patch
+/// order and takes the step, whose result the host then holds: should the leader fail, the next one begins from there.
 struct TrainingStep::State {
-    Device device;
     Model start;
     StepConfig config;
     ChannelPlan plan;
     std::size_t parameters;
-    int micro = 1;
-    std::unique_ptr<NeuralGrid> grid;
-    std::unique_ptr<Gradients> gradients;
-    std::unique_ptr<MatrixLayers> matrices; // null: the direct kernels convolve
-    std::vector<Image> images;
-    Buffer parameter_values, first_moment, second_moment, scale, crop_planes;
-    Buffer patch_gradients; // [batch][parameters]
-    Buffer gradient;        // [parameters]
-    Buffer patch_losses;    // [batch]
-    Buffer step_losses;     // [loss_slots]
-    Kernel sum_runs, gradient_scale, adam;
+    Dealer dealer;
+    std::vector<std::unique_ptr<Replica>> replicas; // by device; null for one that failed at once
+    std::vector<TrainingImage> images;
     std::int64_t step = 0;
     std::vector<double> losses;
-    cl_uint waiting = 0;
+    // Of several devices:
+    OptimizerState present;
+    std::size_t leader = 0; // the device that holds the moments of `present`
+    std::vector<PatchRow> rows;
+    bool compared = false;
 
-    State(const Device& d, const Model& m, const StepConfig& c)
-        : device(d), start(m), config(c), plan(m, true), parameters(m.parameters()) {}
+    State(const std::vector<Device>& devices, const Model& m, const StepConfig& c)
+        : start(m), config(c), plan(m, true), parameters(m.parameters()), dealer(devices), replicas(devices.size()) {}
 
-    BatchShape shape(int patches) const { return {config.patch, config.patch, patches, false, true}; }
-    std::size_t bytes(int patches) const {
-        return NeuralGrid::bytes(device, start, shape(patches)) + Gradients::bytes(device, start, shape(patches)) +
-               (by_matrices() ? MatrixLayers::bytes(start, shape(patches)) : 0);
-    }
-    std::size_t largest_bytes(int patches) const {
-        return std::max(Gradients::largest_bytes(device, start, shape(patches)),
-                        by_matrices() ? MatrixLayers::largest_bytes(start, shape(patches)) : 0);
-    }
-    bool by_matrices() const { return config.convolution == ConvolutionBackend::clblast; }
+    bool alone() const { return replicas.size() == 1; }
+    Replica& only() const { return *replicas.front(); }
+    bool same_context(std::size_t a, std::size_t b) const { return replicas[a]->device().context()() == replicas[b]->device().context()(); }
 
-    void assemble(const Crop& crop, int n) {
-        Image& image = images.at(static_cast<std::size_t>(crop.image));
-        const int size = config.patch;
-        if (crop.x < 0 || crop.y < 0 || crop.x + size > image.width || crop.y + size > image.height || crop.orientation < 0 ||
-            crop.orientation > 7)
-            throw Error(ErrorKind::internal, fmt::format("crop at {}, {} of a {} x {} image", crop.x, crop.y, image.width, image.height));
-        if (image.on_device)
-            return grid->assemble(image.on_device, image.width, image.height, image.params, crop.x, crop.y, crop.orientation, n);
-        std::vector<float> part;
-        const std::size_t plane = static_cast<std::size_t>(image.width) * image.height;
-        for (std::size_t p = 0; p < plan.planes().size(); ++p)
-            for (int y = 0; y < size; ++y) {
-                const auto row = image.on_host.begin() +
-                                 static_cast<std::ptrdiff_t>(p * plane + static_cast<std::size_t>(crop.y + y) * image.width + crop.x);
-                part.insert(part.end(), row, row + size);
-            }
-        if (!crop_planes) crop_planes = device.buffer(part.size() * 4, "crop");
-        device.write(crop_planes, part.data(), part.size() * 4);
-        grid->assemble(crop_planes, size, size, image.params, 0, 0, crop.orientation, n);
-    }
-
-    void sum(const Buffer& values, const Buffer& totals, cl_uint first, std::size_t count, std::size_t item, std::size_t step_between,
-             std::size_t run) {
-        device.launch(sum_runs, {count}, sum_runs.group(64), {4.0 * count * run, static_cast<double>(count) * run}, values, totals, first,
-                      static_cast<cl_uint>(count), static_cast<cl_uint>(item), static_cast<cl_uint>(step_between),
-                      static_cast<cl_uint>(run));
-    }
-
-    /// The crops' gradient, and their loss in slot `waiting`.
-    void find_gradient(const std::vector<Crop>& crops) {
+    float share_of(const std::vector<Crop>& crops) const {
         if (crops.empty() || crops.size() > static_cast<std::size_t>(config.batch))
             throw Error(ErrorKind::internal, fmt::format("a step over {} patches; its batch is {}", crops.size(), config.batch));
-        grid->set_parameters(parameter_values);
-        gradients->set_parameters(parameter_values);
-        if (matrices) matrices->set_parameters(parameter_values);
-        const float share = static_cast<float>(1.0 / (3.0 * config.patch * config.patch * static_cast<double>(crops.size())));
-        for (std::size_t first = 0; first < crops.size(); first += static_cast<std::size_t>(micro)) {
-            const int n = static_cast<int>(std::min(crops.size() - first, static_cast<std::size_t>(micro)));
-            for (int i = 0; i < n; ++i) assemble(crops[first + static_cast<std::size_t>(i)], i);
-            if (matrices)
-                matrices->forward(*grid, n);
-            else
-                grid->guide_network(n);
-            grid->grids(n);
-            gradients->backward(*grid, n, share, patch_gradients, patch_losses, first, matrices.get());
+        return static_cast<float>(1.0 / (3.0 * config.patch * config.patch * static_cast<double>(crops.size())));
+    }
+
+    void find_alone(const std::vector<Crop>& crops) {
+        const float share = share_of(crops);
+        only().begin();
+        only().find_gradients(crops, images, 0, crops.size(), share);
+        only().sum_patches(crops.size());
+    }
+
+    /// Every device that is left finds gradients of patches as fast as it can. Notes who did which in `rows`.
+    void deal(const std::vector<Crop>& crops) {
+        const float share = share_of(crops);
+        rows.resize(crops.size());
+        std::vector<Dealer::Portion> portions(replicas.size());
+        const std::size_t to = dealer.left().front();
+        dealer.each([&](std::size_t k) {
+            portions[k].most = static_cast<std::uint32_t>(replicas[k]->micro_batch());
+            replicas[k]->begin();
+        });
+        if (!std::exchange(compared, true)) // one that computes other bits must not mix with the others
+            dealer.compare("gradients", [&](std::size_t k) {
+                Replica& r = *replicas[k];
+                r.find_gradients(crops, images, 0, 1, share);
+                const auto row = r.device().download<float>(r.patch_gradients(), parameters);
+                return std::string(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(float));
+            });
+        dealer.deal("patches", static_cast<std::uint32_t>(crops.size()), 1, portions,
+                    [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
+                        Replica& r = *replicas[k];
+                        r.find_gradients(crops, images, first, count, share);
+                        if (same_context(k, to)) r.device().finish();
+                        for (std::size_t i = first; i < first + count; ++i) {
+                            rows[i].device = k;
+                            if (same_context(k, to)) continue; // the leader copies it on its device
+                            rows[i].gradient = r.device().download<float>(r.patch_gradients(), parameters, i * parameters);
+                            rows[i].loss = r.device().download<float>(r.patch_losses(), 1, i).front();
+                        }
+                    });
+    }
+
+    /// Brings the rows of the others to the leader.
+    void gather(std::size_t to) {
+        Device& device = replicas[to]->device();
+        Buffer &gradients = replicas[to]->patch_gradients(), &patch_losses = replicas[to]->patch_losses();
+        const std::size_t row = parameters * 4;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            const PatchRow& r = rows[i];
+            if (r.device == to) continue;
+            if (same_context(r.device, to)) {
+                copy(device, replicas[r.device]->patch_gradients(), gradients, row, i * row, i * row);
+                copy(device, replicas[r.device]->patch_losses(), patch_losses, 4, i * 4, i * 4);
+            } else {
+                device.write(gradients, r.gradient.data(), row, i * row);
+                device.write(patch_losses, &r.loss, 4, i * 4);
+            }
         }
-        sum(patch_gradients, gradient, 0, parameters, 1, parameters, crops.size());
-        sum(patch_losses, step_losses, waiting, 1, 1, 1, crops.size());
-        ++waiting;
+    }
+
+    /// The crops' gradient by all devices, summed on the leader, then finish(leader). Whenever the leader fails, all is done again by those
+    /// that are left.
+    template <class Finish>
+    void together(const std::vector<Crop>& crops, Finish&& finish) {
+        for (;;) {
+            const std::size_t first = dealer.left().front();
+            deal(crops);
+            if (dealer.left().front() != first) continue;
+            try {
+                if (leader != first) replicas[first]->set_state(present);
+                leader = first;
+                gather(first);
+                replicas[first]->sum_patches(crops.size());
+                return finish(*replicas[first]);
+            } catch (const Error& error) {
+                if (!is_device_failure(error)) throw;
+                dealer.drop(first, error);
+            }
+        }
+    }
+
+    void step_alone(const std::vector<Crop>& crops, double learning_rate) {
+        find_alone(crops);
+        only().adam(++step, learning_rate);
+        if (only().losses_full()) fetch_losses();
+    }
+
+    void step_together(const std::vector<Crop>& crops, double learning_rate) {
+        together(crops, [&](Replica& r) {
+            r.adam(step + 1, learning_rate);
+            OptimizerState next = r.state();
+            const float loss = r.take_losses().back();
+            present = std::move(next);
+            present.step = ++step;
+            losses.push_back(loss);
+        });
+        dealer.each([&](std::size_t k) {
+            if (k != leader) replicas[k]->set_parameters(present.parameters);
+        });
     }
 
     void fetch_losses() {
-        for (const float loss : device.download<float>(step_losses, waiting)) losses.push_back(loss);
-        waiting = 0;
+        if (!alone()) return;
+        for (const float loss : only().take_losses()) losses.push_back(loss);
     }
 };
 
 TrainingStep::TrainingStep(const Device& device, const Model& model, const StepConfig& config)
-    : state_(std::make_unique<State>(device, model, config)) {
+    : TrainingStep(std::vector<Device>{device}, model, config) {}
+
+TrainingStep::TrainingStep(const std::vector<Device>& devices, const Model& model, const StepConfig& config)
+    : state_(std::make_unique<State>(devices, model, config)) {
     State& s = *state_;
     validate(model);
-    const auto fits = [&](int patches) {
-        return s.bytes(patches) <= s.device.free_bytes() / 2 && s.largest_bytes(patches) <= s.device.max_alloc_bytes();
-    };
-    // 65536 pixels at once keep a CPU's caches (8 % faster than 8 times as many) and are enough to share between its cores.
-    const int pixels = s.device.tunable("micro_pixels", device.facts().type == DeviceType::cpu ? 1 << 16 : 1 << 19);
-    const int patches = std::max(1, pixels / (config.patch * config.patch));
-    s.micro = std::min(config.batch, config.micro_batch > 0 ? config.micro_batch : patches);
-    while (s.micro > 1 && !fits(s.micro)) s.micro = (s.micro + 1) / 2;
-    s.grid = std::make_unique<NeuralGrid>(s.device, model, s.shape(s.micro));
-    s.gradients = std::make_unique<Gradients>(s.device, model, config.loss, *s.grid, s.shape(s.micro));
-    if (s.by_matrices()) s.matrices = std::make_unique<MatrixLayers>(s.device, model, s.shape(s.micro));
-    s.parameter_values = s.device.upload(model.flat(), "parameters");
-    for (Buffer* b : {&s.first_moment, &s.second_moment, &s.gradient}) {
-        *b = s.device.buffer(s.parameters * 4, "moments");
-        s.device.fill(*b, 0);
-    }
-    s.scale = s.device.upload(std::vector<float>{1}, "gradient scale");
-    s.patch_gradients = s.device.buffer(s.parameters * 4 * static_cast<std::size_t>(config.batch), "gradients");
-    s.patch_losses = s.device.buffer(static_cast<std::size_t>(config.batch) * 4, "losses");
-    s.step_losses = s.device.buffer(loss_slots * 4, "losses");
-    s.sum_runs = s.device.kernel("train/sum_runs");
-    s.gradient_scale = s.device.kernel("train/gradient_scale");
-    s.adam = s.device.kernel("train/adam");
+    if (!s.alone() && config.convolution == ConvolutionBackend::clblast)
+        throw Error(ErrorKind::usage, "takes one device: its sums have another order on each; give one --device", "--conv clblast");
+    s.dealer.each([&](std::size_t k) { s.replicas[k] = std::make_unique<Replica>(devices[k], model, config); });
+    s.leader = s.dealer.left().front();
+    s.present = {model.flat(), std::vector<float>(s.parameters), std::vector<float>(s.parameters), 0};
 }
 TrainingStep::~TrainingStep() = default;
 
@@ -163,54 +179,52 @@ int TrainingStep::add_image(const Frame& noisy, const Frame& target) {
     if (noisy.width < s.config.patch || noisy.height < s.config.patch)
         throw Error(ErrorKind::input,
                     fmt::format("is {} x {} pixels, smaller than a patch of {}", noisy.width, noisy.height, s.config.patch));
-    Image image;
-    image.width = noisy.width;
-    image.height = noisy.height;
-    image.params = s.plan.params(s.start.exposure ? exposure_of(noisy) : 1);
-    s.plan.gather(noisy, &target, {0, 0, noisy.width, noisy.height}, image.on_host);
-    const std::size_t bytes = image.on_host.size() * 4, reserve = s.device.free_bytes() / 8;
-    if (bytes <= s.device.max_alloc_bytes() && bytes + reserve <= s.device.free_bytes()) {
-        image.on_device = s.device.upload(image.on_host, "training image");
-        image.on_host = {};
-    }
+    TrainingImage image{noisy.width, noisy.height, s.plan.params(s.start.exposure ? exposure_of(noisy) : 1), {}};
+    s.plan.gather(noisy, &target, {0, 0, noisy.width, noisy.height}, image.planes);
+    std::vector<std::shared_ptr<const Buffer>> uploaded(s.replicas.size());
+    s.dealer.each([&](std::size_t k) {
+        std::shared_ptr<const Buffer> from; // devices of one context share an upload
+        for (std::size_t other = 0; other < k; ++other)
+            if (uploaded[other] && s.same_context(other, k)) from = uploaded[other];
+        uploaded[k] = s.replicas[k]->add_image(image, from);
+    });
+    const auto left = s.dealer.left();
+    if (std::all_of(left.begin(), left.end(), [&](std::size_t k) { return uploaded[k] != nullptr; })) image.planes = {};
     s.images.push_back(std::move(image));
     return static_cast<int>(s.images.size()) - 1;
 }
 
 int TrainingStep::images() const { return static_cast<int>(state_->images.size()); }
 
+std::vector<Device> TrainingStep::devices() const {
+    std::vector<Device> devices;
+    for (const std::size_t k : state_->dealer.left()) devices.push_back(state_->replicas[k]->device());
+    return devices;
+}
+
 OptimizerState TrainingStep::state() const {
     State& s = *state_;
-    return {s.device.download<float>(s.parameter_values, s.parameters), s.device.download<float>(s.first_moment, s.parameters),
-            s.device.download<float>(s.second_moment, s.parameters), s.step};
+    OptimizerState state = s.alone() ? s.only().state() : s.present;
+    state.step = s.step;
+    return state;
 }
 
 void TrainingStep::set_state(const OptimizerState& state) {
     State& s = *state_;
-    for (auto [from, to] : {std::pair(&state.parameters, &s.parameter_values),
-                            {&state.first_moment, &s.first_moment},
-                            {&state.second_moment, &s.second_moment}}) {
-        if (from->size() != s.parameters)
-            throw Error(ErrorKind::input, fmt::format("has {} parameters; the model has {}", from->size(), s.parameters));
-        s.device.write(*to, from->data(), from->size() * 4);
-    }
+    for (const auto* values : {&state.parameters, &state.first_moment, &state.second_moment})
+        if (values->size() != s.parameters)
+            throw Error(ErrorKind::input, fmt::format("has {} parameters; the model has {}", values->size(), s.parameters));
+    s.fetch_losses();
+    s.present = state;
     s.step = state.step;
+    s.dealer.each([&](std::size_t k) { s.replicas[k]->set_state(state); });
 }
 
 void TrainingStep::step(const std::vector<Crop>& crops, double learning_rate) {
-    State& s = *state_;
-    s.find_gradient(crops);
-    const StepConfig& c = s.config;
-    const auto n = static_cast<cl_uint>(s.parameters);
-    if (c.clip_norm > 0) s.device.launch(s.gradient_scale, {1}, {1}, {}, s.gradient, n, static_cast<float>(c.clip_norm), s.scale);
-    ++s.step;
-    const shared::float4 rates{static_cast<float>(c.beta1), static_cast<float>(1 - c.beta1), static_cast<float>(c.beta2),
-                               static_cast<float>(1 - c.beta2)};
-    const std::array<float, 2> correction{static_cast<float>(1 / (1 - power(c.beta1, s.step))),
-                                          static_cast<float>(1 / (1 - power(c.beta2, s.step)))};
-    s.device.launch(s.adam, {n}, s.adam.group(64), {}, s.parameter_values, s.first_moment, s.second_moment, s.gradient, s.scale, rates,
-                    correction, static_cast<float>(learning_rate), static_cast<float>(c.epsilon), n);
-    if (s.waiting == loss_slots) s.fetch_losses();
+    if (state_->alone())
+        state_->step_alone(crops, learning_rate);
+    else
+        state_->step_together(crops, learning_rate);
 }
 
 std::vector<double> TrainingStep::take_losses() {
@@ -221,16 +235,23 @@ std::vector<double> TrainingStep::take_losses() {
 double TrainingStep::gradient(const std::vector<Crop>& crops, std::vector<float>& gradient) {
     State& s = *state_;
     s.fetch_losses();
-    s.find_gradient(crops);
-    gradient = s.device.download<float>(s.gradient, s.parameters);
-    const double loss = s.device.download<float>(s.step_losses, s.waiting).back();
-    s.waiting = 0;
+    double loss = 0;
+    const auto fetch = [&](Replica& r) {
+        gradient = r.gradient();
+        loss = r.take_losses().back();
+    };
+    if (s.alone()) {
+        s.find_alone(crops);
+        fetch(s.only());
+    } else {
+        s.together(crops, fetch);
+    }
     return loss;
 }
 
 Model TrainingStep::model() const {
     Model m = state_->start;
-    m.set_flat(state_->device.download<float>(state_->parameter_values, state_->parameters));
+    m.set_flat(state().parameters);
     return m;
 }
 

@@ -1,4 +1,4 @@
-// One step of training on the device: crops, forward, loss, backward, Adam.
+// One step of training on a device or several: crops, forward, loss, backward, Adam.
 #pragma once
 #include "host/denoise/model.hpp"
 #include "host/frame/frame.hpp"
@@ -41,18 +41,24 @@ class TrainingStep {
 public:
     /// Throws Error; {memory} when not even one patch fits.
     TrainingStep(const Device& device, const Model& model, const StepConfig& config);
+    /// Several devices share each step's patches; gradients are summed in patch order, so the bits are those of one. A device that fails is
+    /// left out with a warning, and the others do its work; the last one's failure is thrown. CLBlast convolves on one device only:
+    /// Error{usage}.
+    TrainingStep(const std::vector<Device>& devices, const Model& model, const StepConfig& config);
     ~TrainingStep();
 
     /// Makes an image known: a noisy frame with the model's channels and its target's R G B (premultiplied, as wide and high). Kept on the
     /// device while it fits, else on the host. Throws Error{input} when a channel is missing or sizes differ.
     int add_image(const Frame& noisy, const Frame& target);
     int images() const;
+    /// The devices that have not failed.
+    std::vector<Device> devices() const;
 
     OptimizerState state() const;
     void set_state(const OptimizerState& state);
 
-    /// One step at the given learning rate over any number of crops up to `batch` (the mean is over those given). Only enqueues: the loss
-    /// comes later.
+    /// One step at the given learning rate over any number of crops up to `batch` (the mean is over those given). One device alone only
+    /// enqueues it: the loss comes later.
     void step(const std::vector<Crop>& crops, double learning_rate);
     /// The mean loss of each step since the last call, in order; waits for them. NaN where it was.
     std::vector<double> take_losses();

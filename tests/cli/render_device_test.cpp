@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -235,6 +236,29 @@ TEST_F(Render, RefusesWithOneLineAndWritesNothing) {
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << command << "\n" << o.err;
         EXPECT_FALSE(exists("x.png")) << command;
     }
+}
+
+TEST_F(Render, GoesOnWithoutADeviceThatFails) {
+    if (run_ball({"-o", "one.exr", "--device", "cpu/2"}).exit_code != 0) GTEST_SKIP() << "no CPU of two parts";
+    const auto faulty = [&](const std::string& fault, const char* device = "cpu/2") {
+        return run_ball({"-o", "a.exr", "--device", device}, {{"CLVR_FAULT", fault}});
+    };
+    const std::string index = nlohmann::json::parse(Child({"devices", "--device", "cpu", "--json"}, {}, folder.path()).wait().out)
+                                  .at("selection")
+                                  .at("devices")[0]
+                                  .at("index")
+                                  .dump();
+    for (const char* fault : {"launch:20", "alloc:9", "build:render/shade", "result:probe/trust"})
+        for (const char* part : {".1", ".2"}) {
+            const Outcome o = faulty(fault + ("@" + index) + part);
+            EXPECT_EQ(o.exit_code, 0) << fault << part << ": " << o.err;
+            EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+            EXPECT_THAT(o.err, AllOf(HasSubstr("clvr: warning: part "), HasSubstr("left out")));
+            EXPECT_EQ(hash("a.exr"), hash("one.exr")) << fault << part;
+        }
+    for (const auto& [fault, code] :
+         {std::pair("launch:20", 4), {"alloc:9", 5}, {"build:render/shade", 4}, {"result:probe/trust", 4}, {"x", 2}})
+        for (const char* device : {"cpu", "cpu/2"}) EXPECT_EQ(faulty(fault, device).exit_code, code) << fault << " " << device;
 }
 
 } // namespace

@@ -157,6 +157,15 @@ TEST_F(Learning, TrainsDenoisesAndCompares) {
     EXPECT_TRUE(read_exr(path("r.exr")).has("noisy.G"));
     EXPECT_TRUE(exists("r.png"));
 
+    if (run({"devices", "--device", "cpu/2"}).exit_code == 0) {
+        std::vector<std::string> parts = train;
+        parts[3] = path("p.safetensors");
+        parts.insert(parts.end(), {"--device", "cpu/2"});
+        const Outcome two = run(parts);
+        ASSERT_EQ(two.exit_code, 0) << two.err;
+        EXPECT_EQ(text(path("p.safetensors")), model);
+    }
+
     // SIGKILL at some moment, then --resume: the same model, byte for byte.
     std::vector<std::string> again = train;
     again[3] = path("k.safetensors");

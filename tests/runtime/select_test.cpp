@@ -159,6 +159,15 @@ TEST(Usable, SaysWhy) {
     EXPECT_NE(why_unusable(d), "");
 }
 
+TEST(Select, AllIsEveryUsableDeviceThatIsNoSimulator) {
+    EXPECT_EQ(option("all"), "0 2 3");
+    EXPECT_EQ(option("ALL+1"), "0 2 3 1");
+    EXPECT_EQ(refusal({"all/2", "", {}}).kind(), ErrorKind::usage);
+    EXPECT_EQ(refusal({"all+0", "", {}}).kind(), ErrorKind::usage);
+    const auto simulators = machine({{"Oclgrind", "", "", {device("Oclgrind Simulator", DeviceType::cpu, true)}}});
+    EXPECT_EQ(refusal({"all", "", {}}, simulators).kind(), ErrorKind::device);
+}
+
 TEST(Remembered, SavedAndRecalled) {
     const TemporaryFolder folder;
     const ScopedVariable config("XDG_CONFIG_HOME", folder.path().string());

@@ -7,6 +7,7 @@
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
 #include "tests/denoise/batches.hpp"
+#include "tests/runtime/faulty_devices.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>
@@ -108,15 +109,17 @@ TEST_P(LossCase, GradientIsTheSlopeOfTheLoss) {
 INSTANTIATE_TEST_SUITE_P(Losses, LossCase,
                          ::testing::Values(Loss::shifted_gamma, Loss::reference, Loss::smape, Loss::relative_l2, Loss::noisy));
 
-std::vector<float> trained(int micro_batch, const std::map<std::string, int>& tunables, std::size_t memory = 0) {
+std::vector<float> trained(int micro_batch, const std::map<std::string, int>& tunables, std::size_t memory = 0,
+                           std::vector<Device> devices = {test_device()}) {
     StepConfig config;
     config.patch = 24;
     config.batch = 5;
     config.micro_batch = micro_batch;
-    Device device = test_device();
-    for (const auto& [name, value] : tunables) device.set_tunable(name, value);
-    if (memory > 0) device.set_memory_limit(memory);
-    TrainingStep step(device, start_model(), config);
+    for (Device& device : devices) {
+        for (const auto& [name, value] : tunables) device.set_tunable(name, value);
+        if (memory > 0) device.set_memory_limit(memory);
+    }
+    TrainingStep step(devices, start_model(), config);
     for (std::uint32_t n = 0; n < 2; ++n) {
         const auto [noisy, clean] = pair_of(40, 5 + n);
         step.add_image(noisy, clean);
@@ -133,6 +136,46 @@ TEST(TrainingBits, DoNotDependOnMicroBatchesWidthsOrMemory) {
     EXPECT_EQ(trained(5, {{"conv_width", 1}}), whole);
     EXPECT_EQ(trained(3, {{"conv_width", 8}, {"splat_bins", 5}}), whole);
     EXPECT_EQ(trained(0, {}, std::size_t{6} << 20), whole); // images stay on the host where the device is full
+}
+
+TEST(TrainingBits, DoNotDependOnTheDevices) {
+    const std::vector<float> alone = trained(2, {});
+    EXPECT_EQ(trained(1, {}, 0, open_two_devices()), alone);                                      // in one context
+    EXPECT_EQ(trained(2, {}, 0, {test_device(), test_device()}), alone);                          // in two
+    EXPECT_EQ(trained(0, {{"conv_width", 8}}, std::size_t{14} << 20, open_two_devices()), alone); // images stay on the host
+}
+
+TEST(Training, SeveralDevicesGiveTheGradientAndLossesOfOne) {
+    StepConfig config;
+    config.patch = 24;
+    config.batch = 7;
+    config.micro_batch = 1;
+    TrainingStep one(two_devices().front(), start_model(), config), two(two_devices(), start_model(), config);
+    const auto [noisy, clean] = pair_of(40, 8);
+    for (TrainingStep* step : {&one, &two}) step->add_image(noisy, clean);
+    std::vector<Crop> crops;
+    for (int k = 0; k < 7; ++k) crops.push_back({0, k, 2 * k, k});
+    std::vector<float> gradient_of_one, gradient_of_two;
+    EXPECT_EQ(one.gradient(crops, gradient_of_one), two.gradient(crops, gradient_of_two));
+    EXPECT_EQ(gradient_of_one, gradient_of_two);
+    for (int k = 0; k < 3; ++k)
+        for (TrainingStep* step : {&one, &two}) step->step(crops, 1e-3);
+    EXPECT_EQ(one.take_losses(), two.take_losses());
+    EXPECT_TRUE(two.take_losses().empty());
+    EXPECT_EQ(one.state().second_moment, two.state().second_moment);
+    EXPECT_EQ(two.state().step, 3);
+    EXPECT_EQ(one.model().flat(), two.model().flat());
+}
+
+TEST(Training, ClblastTakesOneDevice) {
+    StepConfig config;
+    config.convolution = ConvolutionBackend::clblast;
+    try {
+        TrainingStep(two_devices(), start_model(), config);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::usage);
+    }
 }
 
 TEST(Training, OverfitsASmallFrame) {
@@ -177,6 +220,7 @@ class TrainerFiles : public ::testing::Test {
 protected:
     TemporaryFolder folder;
     Device device = test_device();
+    std::vector<Device> devices{device};
 
     std::string path(const std::string& name) const { return (folder.path() / name).string(); }
     /// A folder of three views, as `clvr pairs` would leave it.
@@ -213,7 +257,7 @@ protected:
                const std::string& validate = {}) {
         std::atomic<bool> cancelled{false};
         int reports = 0;
-        Trainer trainer(device, start_model(), c, {path("train")}, validate, path(output), resume);
+        Trainer trainer(devices, start_model(), c, {path("train")}, validate, path(output), resume);
         return trainer.run(cancelled, [&](const TrainerProgress&) {
             if (++reports == stop_after_reports) cancelled = true;
         });
@@ -256,6 +300,56 @@ TEST_F(TrainerFiles, EndsAfterItsSteps) {
     ASSERT_TRUE(train(c, "steps.safetensors", false));
     ASSERT_TRUE(train(config(), "epochs.safetensors", false));
     EXPECT_EQ(read_text(path("steps.safetensors")), read_text(path("epochs.safetensors")));
+}
+
+TEST_F(TrainerFiles, OtherDevicesGiveTheSameFile) {
+    pairs("train");
+    ASSERT_TRUE(train(config(), "one.safetensors", false, 0, path("train")));
+    devices = two_devices();
+    ASSERT_TRUE(train(config(), "two.safetensors", false, 0, path("train")));
+    ASSERT_FALSE(train(config(), "resumed.safetensors", false, 1, path("train")));
+    devices = {device};
+    ASSERT_TRUE(train(config(), "resumed.safetensors", true, 0, path("train")));
+    for (const char* ending : {".safetensors", ".checkpoint", ".training.csv"})
+        for (const char* name : {"two", "resumed"})
+            EXPECT_EQ(read_text(path(std::string("one") + ending)), read_text(path(std::string(name) + ending))) << name << ending;
+}
+
+TEST_F(TrainerFiles, FaultyDevicesAreLeftOutOrWaitedFor) {
+    if (faulty_devices("delay:1").empty()) GTEST_SKIP() << "the device has no parts";
+    pairs("train");
+    ASSERT_TRUE(train(config(), "one.safetensors", false, 0, path("train")));
+    const auto expect_same_with = [&](const std::string& fault, int part, long warned, int delay_ms = 0) {
+        SCOPED_TRACE(fault);
+        const Warnings warnings;
+        devices = faulty_devices(fault, part, delay_ms);
+        ASSERT_TRUE(train(config(), "faulty.safetensors", false, 0, path("train")));
+        EXPECT_EQ(lines_of(warnings.text()), warned) << warnings.text();
+        for (const char* ending : {".safetensors", ".checkpoint", ".training.csv"})
+            EXPECT_EQ(read_text(path(std::string("one") + ending)), read_text(path(std::string("faulty") + ending))) << ending;
+    };
+    expect_same_with("delay:3", 2, 0);
+    for (const char* fault : {"launch:30", "launch:70", "alloc:20", "build:train/adam"}) expect_same_with(fault, 2, 1);
+    expect_same_with("launch:120", 2, 1, 2); // within a step
+    // The first one, which sums and takes the steps; after it has taken some, within a step and in the validation.
+    for (const char* fault : {"launch:37", "launch:150", "launch:151", "launch:180"}) expect_same_with(fault, 1, 1);
+    for (const auto& [fault, kind] : {std::pair("launch:150", ErrorKind::device), {"alloc:20", ErrorKind::memory}}) {
+        const Warnings warnings;
+        devices = faulty_devices(fault, 0);
+        try {
+            train(config(), "none.safetensors", false);
+            FAIL();
+        } catch (const Error& e) {
+            EXPECT_EQ(e.kind(), kind) << e.line();
+        }
+    }
+    devices = faulty_devices("result:train/sum_lanes");
+    try {
+        train(config(), "none.safetensors", false);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_THAT(e.line(), HasSubstr("compute different gradients"));
+    }
 }
 
 TEST_F(TrainerFiles, KeepsTheBestModelAndTheLast) {
@@ -358,9 +452,9 @@ TEST_F(TrainerFiles, OneImageIsEnoughAndNoneIsNot) {
     TrainerConfig c = config();
     c.epochs = 1;
     EXPECT_TRUE(
-        Trainer(device, start_model(), c, {path("one")}, "", path("one.safetensors"), false).run({}, [](const TrainerProgress&) {}));
+        Trainer({device}, start_model(), c, {path("one")}, "", path("one.safetensors"), false).run({}, [](const TrainerProgress&) {}));
     describe("");
-    EXPECT_THROW(Trainer(device, start_model(), c, {path("one")}, "", path("one.safetensors"), false), Error);
+    EXPECT_THROW(Trainer({device}, start_model(), c, {path("one")}, "", path("one.safetensors"), false), Error);
 }
 
 TEST_F(TrainerFiles, RefusesABatchThatCannotFit) {

@@ -1,0 +1,29 @@
+// Two devices out of the one under test.
+#pragma once
+#include "runtime/device.hpp"
+#include "runtime/select.hpp"
+
+#include <vector>
+
+namespace clvr::testing {
+
+/// Two equal parts of the device under test (one context), or where it cannot be divided the device opened twice (two contexts).
+inline std::vector<Device> open_two_devices() {
+    const DeviceFacts root = select_devices("").devices.at(0);
+    std::vector<Device> devices;
+    if (root.sub_devices == 0 && root.max_sub_devices >= 2) {
+        for (const DeviceFacts& part : divide(root, 2)) devices.push_back(Device::open(part));
+    } else {
+        devices = {Device::open(root), Device::open(root)};
+    }
+    return devices;
+}
+
+/// The same, opened once: for tests that set nothing on them.
+inline const std::vector<Device>& two_devices() {
+    static const std::vector<Device>* const devices =
+        new std::vector<Device>(open_two_devices()); // never destroyed: as the driver likes it
+    return *devices;
+}
+
+} // namespace clvr::testing
