@@ -100,7 +100,7 @@ TEST(Faults, CoverEveryCheck) {
 
 TEST(Checks, OfAKernelThatDoesNotBuildFailWithTheCompilersWords) {
     const TemporaryFolder folder;
-    folder.write("lib/random.clh", "int wrong = undeclared_name;\n");
+    folder.write("lib/random.clh", "static int wrong(void) { return undeclared_name; }\n");
     const clvr::ScopedKernels kernels(folder);
     const auto results = run_checks(devices_here().front(), chosen_checks({"random", "trust"}));
     EXPECT_EQ(failed_names(results), "random");
