@@ -80,9 +80,8 @@ ErrorKind refusal_with(const std::string& fault, int part, std::string* line = n
 TEST(FaultyDevices, AreLeftOutOrWaitedFor) {
     if (faulty_devices("delay:1").empty()) GTEST_SKIP() << "the device has no parts";
     expect_same_with("delay:15", 0);
-    for (const char* fault : {"launch:1", "launch:2", "launch:19", "alloc:3", "alloc:12", "build:render/shade", "build:render/march"})
-        expect_same_with(fault, 1);
-    for (const char* fault : {"launch:60", "launch:90"}) expect_same_with(fault, 1, 2); // while it traces
+    for (const char* fault : {"launch:2", "alloc:3", "alloc:12", "build:render/shade"}) expect_same_with(fault, 1);
+    expect_same_with("launch:60", 1, 2); // while it traces
 }
 
 TEST(FaultyDevices, AllOfThemAreAnError) {
