@@ -107,7 +107,7 @@ TEST_F(Experiment, PlansWithoutWriting) {
     EXPECT_EQ(plan["paths"], (3 + 2) * (1 + 2 + 4 + 8 + 4) * 24 * 20);
     EXPECT_EQ(plan["training_steps"], 12);
     EXPECT_EQ(plan["dims"], nlohmann::json({20, 24, 18}));
-    EXPECT_EQ(plan["volume_bytes"], 20 * 24 * 18 * 2);
+    EXPECT_EQ(plan["volume_bytes"], 20 * 24 * 18); // foam is u8
     double seconds = 0;
     for (const auto& stage : plan["stages"]) {
         EXPECT_GT(stage["seconds"].get<double>(), 0) << stage["stage"];
