@@ -144,6 +144,13 @@ TEST(Compare, RatioHoldsThroughPhases) {
     EXPECT_FALSE(c.pruned);
 }
 
+TEST(Compare, EndsAtItsLimitButNotBeforeTwoRounds) {
+    Machine m;
+    const auto side = [&] { m.now += 0.5; };
+    EXPECT_EQ(compare(m.clock(), side, side, 9, 0).rounds, 2);
+    EXPECT_EQ(compare(m.clock(), side, side, 9, 3.5).rounds, 4);
+}
+
 TEST(Compare, HopelessCandidatesAreGivenUp) {
     Machine m;
     int runs = 0;

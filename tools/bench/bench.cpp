@@ -10,8 +10,9 @@
 namespace clvr::bench {
 namespace {
 
-constexpr double row_limit = 120, quick_row_limit = 60, candidate_limit = 30, quick_candidate_limit = 15; // [s]
-constexpr double tuning_limit = 270, quick_tuning_limit = 50; // [s] of a device: no new candidate later
+// Seconds. A tuning's last candidate ends before 300 or 60, the final checks included.
+constexpr double row_limit = 120, quick_row_limit = 60, candidate_limit = 60, quick_candidate_limit = 20;
+constexpr double tuning_limit = 220, quick_tuning_limit = 38, whole_tuning_limit = 290, whole_quick_tuning_limit = 58;
 
 bool wanted(const BenchOptions& options, const Stage& stage) {
     return options.stages.empty() || std::find(options.stages.begin(), options.stages.end(), stage.name) != options.stages.end();
@@ -61,8 +62,12 @@ TunedDevice tune_device(const DeviceFacts& facts, bool quick, Child& child) {
     if (quick) knobs.erase(std::remove_if(knobs.begin(), knobs.end(), [](const Knob& k) { return !k.quick; }), knobs.end());
     // What a user without a file of his own has: the shipped values.
     const auto shipped = shipped_tuning(facts);
+    const double end = steady_seconds() + (quick ? whole_quick_tuning_limit : whole_tuning_limit);
     const Evaluate evaluate = [&](const Tunables& base, const Tunables& candidate, const std::vector<std::string>& on) {
-        return ask_verdict(child, {name_of(facts), on, base, candidate, quick ? 5 : 9}, quick ? quick_candidate_limit : candidate_limit);
+        const double left = end - steady_seconds();
+        if (left < 1) return Verdict{Status::error, "no time was left", 0, 0, false};
+        return ask_verdict(child, {name_of(facts), on, base, candidate, quick ? 5 : 9, quick ? 2.0 : 6.0},
+                           std::min(left, quick ? quick_candidate_limit : candidate_limit));
     };
     return tune(knobs, shipped ? shipped->tuning.values : Tunables(), evaluate, steady_seconds, quick ? quick_tuning_limit : tuning_limit);
 }

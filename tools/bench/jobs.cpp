@@ -120,7 +120,7 @@ json measure_stage(const json& request) {
             const bool quick = request.at("quick");
             const Plan plan = facts.simulator ? Plan{1, 0, 1} : quick ? Plan{5, 0.01, 1} : Plan{9, 0.02, 4};
             Pace& pace = pace_of(facts, request.at("best_pace"));
-            if (!run.native && run.flops > 0 && facts.type == DeviceType::cpu && !facts.simulator)
+            if (!run.native && run.flops > 0 && stage.ceiling != Ceiling::bandwidth && facts.type == DeviceType::cpu && !facts.simulator)
                 run.native = [&] { native_amount = native::fma_chains(10 * pace_rounds, facts.compute_units); };
             t = measure(steady_seconds, pace, run.run, plan, run.native);
         }
@@ -181,7 +181,7 @@ json compare_candidate(const json& request) {
             const StageRun run = prepare_with(facts, stage, candidate);
             if (const std::string wrong = wrongness(stage, size_for(facts), run); !wrong.empty())
                 return refuse(Status::wrong_result, wrong);
-            const Comparison c = compare(steady_seconds, found->run.run, run.run, request.at("rounds"));
+            const Comparison c = compare(steady_seconds, found->run.run, run.run, request.at("rounds"), request.at("limit_seconds"));
             if (!(c.speedup > 0)) return refuse(Status::error, "the clock jumped in every round");
             product *= std::pow(c.speedup, 1.0 / static_cast<double>(request.at("stages").size()));
             most_spread = std::max(most_spread, c.spread);
@@ -211,8 +211,13 @@ std::string request_of(const MeasureJob& job) {
 }
 
 std::string request_of(const CompareJob& job) {
-    return json{{"do", "compare"},  {"device", to_json(job.device)}, {"stages", job.stages},
-                {"base", job.base}, {"candidate", job.candidate},    {"rounds", job.rounds}}
+    return json{{"do", "compare"},
+                {"device", to_json(job.device)},
+                {"stages", job.stages},
+                {"base", job.base},
+                {"candidate", job.candidate},
+                {"rounds", job.rounds},
+                {"limit_seconds", job.limit_seconds}}
         .dump();
 }
 

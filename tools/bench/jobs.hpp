@@ -31,6 +31,7 @@ struct CompareJob {
     std::vector<std::string> stages;
     Tunables base, candidate; ///< all values in force, each
     int rounds = 5;
+    double limit_seconds = 6; ///< of a stage's rounds
 };
 
 /// What a candidate is worth.

@@ -12,12 +12,12 @@ std::vector<Knob> knobs_for(const DeviceFacts& d) {
     const std::vector<int> widths{1, 4, 8, 16};
     const auto groups = [&](std::vector<int> on_cpu) { return cpu ? on_cpu : std::vector{16, 32, 64, 128, 256}; };
     return {
-        {"packet", marches, widths, width, true},
-        {"packet_run", rays, {1, 4, 8, 16, 32, 64}, width == 1 ? 1 : 16, true},
-        {"packet_refill", rays, {1, 2, 4, 8, 12, 16}, std::max(1, width / 4), false},
         {"conv_width", {"GuideNet", "slice", "splat"}, widths, cpu ? 16 : 1, true},
         {"conv_vectors", network, {1, 2, 3, 4, 5, 6}, 5, true},
         {"conv_block", network, {1, 2, 4, 5, 10}, 5, true},
+        {"packet", marches, widths, width, true},
+        {"packet_run", rays, {1, 4, 8, 16, 32, 64}, width == 1 ? 1 : 16, true},
+        {"packet_refill", rays, {1, 2, 4, 8, 12, 16}, std::max(1, width / 4), false},
         {"wave_paths", rays, {1 << 13, 1 << 14, 1 << 15, 1 << 16, 1 << 17, 1 << 18, 1 << 20}, cpu ? 1 << 16 : 1 << 20, true},
         {"brick_log2", marches, {3, 4, 5, 6, 7}, 5, true},
         {"micro_pixels", {"training step"}, {1 << 15, 1 << 16, 1 << 17, 1 << 18, 1 << 19}, cpu ? 1 << 16 : 1 << 19, true},

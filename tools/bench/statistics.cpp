@@ -112,7 +112,7 @@ Timing measure(const Clock& clock, Pace& pace, const std::function<void()>& work
 }
 
 Comparison compare(const Clock& clock, const std::function<void()>& base, const std::function<void()>& candidate, int rounds,
-                   double hopeless) {
+                   double limit_seconds, double hopeless) {
     const auto seconds_of = [&](const std::function<void()>& f) {
         const double begin = clock();
         f();
@@ -120,13 +120,14 @@ Comparison compare(const Clock& clock, const std::function<void()>& base, const 
     };
     Comparison result;
     std::vector<double> ratios;
-    for (int k = 0; k < rounds; ++k) {
+    double spent = 0;
+    for (int k = 0; k < rounds && (k < 2 || spent < limit_seconds); ++k) {
         const bool base_first = k % 2 == 0;
         double ours = 0, theirs = 0;
         if (base_first) theirs = seconds_of(base);
         ours = seconds_of(candidate);
         if (!base_first) theirs = seconds_of(base);
-        if (ours > 0 && theirs > 0) ratios.push_back(theirs / ours);
+        if (ours > 0 && theirs > 0) ratios.push_back(theirs / ours), spent += ours + theirs;
         if (k == 1 && ratios.size() == 2 && std::max(ratios[0], ratios[1]) * hopeless < 1) {
             result.pruned = true;
             break;

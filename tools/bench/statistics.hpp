@@ -63,8 +63,8 @@ struct Comparison {
 };
 
 /// Runs two sides in turn, `rounds` times, each first every other time; gives up after 2 rounds where the candidate takes more than
-/// `hopeless` times as long.
+/// `hopeless` times as long, and begins no further round after `limit_seconds`, but for the first 2.
 Comparison compare(const Clock& clock, const std::function<void()>& base, const std::function<void()>& candidate, int rounds,
-                   double hopeless = 1.3);
+                   double limit_seconds = 1e9, double hopeless = 1.3);
 
 } // namespace clvr::bench

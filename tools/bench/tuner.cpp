@@ -81,8 +81,13 @@ TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Ev
 
     // What came of it stage by stage, each change of one at a time having been held against noise only.
     std::set<std::string> stages;
+    const auto changed = [&](const Knob& knob) {
+        const auto before = start.find(knob.name);
+        const auto now = best.find(knob.name);
+        return now != best.end() && (before == start.end() || before->second != now->second);
+    };
     for (const Knob& knob : knobs)
-        if (best != start) stages.insert(knob.stages.begin(), knob.stages.end());
+        if (changed(knob)) stages.insert(knob.stages.begin(), knob.stages.end());
     for (const std::string& stage : stages) {
         if (best == start) break;
         const Verdict v = evaluate(start, best, {stage});
@@ -93,11 +98,10 @@ TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Ev
         if (v.status == Status::ok && v.speedup >= no_loss) continue;
         for (const Knob& knob : knobs) {
             if (std::find(knob.stages.begin(), knob.stages.end(), stage) == knob.stages.end()) continue;
-            const auto before = start.find(knob.name);
-            const auto now = best.find(knob.name);
-            if (now == best.end() || (before != start.end() && before->second == now->second)) continue;
+            if (!changed(knob)) continue;
             result.tuning.evidence.push_back(fmt::format("{} goes back: {} lost", knob.name, stage));
-            best.erase(now);
+            best.erase(knob.name);
+            const auto before = start.find(knob.name);
             if (before != start.end()) best.insert(*before);
         }
     }
