@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -14,13 +17,34 @@ namespace clvr {
 namespace fs = std::filesystem;
 namespace {
 
-/// Empty when the library is a driver. It stays loaded where the loader has it, too.
-std::string why_no_driver(const std::string& library) {
+std::string load(const std::string& library) {
     void* handle = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (!handle) return fmt::format("cannot be loaded ({})", dlerror());
     const bool driver = dlsym(handle, "clIcdGetPlatformIDsKHR") || dlsym(handle, "clGetExtensionFunctionAddress");
-    dlclose(handle);
     return driver ? "" : "is no OpenCL driver";
+}
+
+/// Empty when the library is a driver. Loaded in a child process: two drivers with an LLVM each (PoCL, Mesa) abort the process that loads
+/// one of them a second time. A child that ends without a word says nothing against the driver.
+std::string why_no_driver(const std::string& library) {
+    int ends[2];
+    if (pipe(ends) != 0) return "";
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(10); // a lock that another thread held at the fork
+        if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+        const std::string why = load(library);
+        const ssize_t written = write(ends[1], why.data(), why.size());
+        _exit(written == static_cast<ssize_t>(why.size()) ? 0 : 1);
+    }
+    close(ends[1]);
+    std::string why;
+    char piece[512];
+    for (ssize_t n; child > 0 && (n = read(ends[0], piece, sizeof piece)) > 0;) why.append(piece, static_cast<std::size_t>(n));
+    close(ends[0]);
+    int status = 0;
+    if (child > 0) waitpid(child, &status, 0);
+    return why;
 }
 
 /// The first line of an .icd file names the library.

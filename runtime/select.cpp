@@ -5,6 +5,7 @@
 #include "runtime/speed.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <cstdlib>
@@ -20,13 +21,14 @@ std::vector<DeviceFacts> flat(const std::vector<PlatformFacts>& platforms) {
     return devices;
 }
 
+/// `skipped`: what is wrong with drivers that the loader left out.
+[[noreturn]] void refuse_without_platform(const std::vector<std::string>& skipped) {
+    const std::string why = skipped.empty() ? "" : fmt::format(" ({})", fmt::join(skipped, "; "));
+    throw Error(ErrorKind::device, fmt::format("there is no OpenCL platform on this machine{}; {}", why, advice));
+}
+
 void require_devices(const std::vector<PlatformFacts>& platforms) {
-    if (platforms.empty()) {
-        std::string skipped;
-        for (const std::string& driver : unloadable_drivers()) skipped += fmt::format("{}{}", skipped.empty() ? " (" : "; ", driver);
-        throw Error(ErrorKind::device,
-                    fmt::format("there is no OpenCL platform on this machine{}{}; {}", skipped, skipped.empty() ? "" : ")", advice));
-    }
+    if (platforms.empty()) refuse_without_platform({});
     std::string names;
     for (const PlatformFacts& platform : platforms) {
         if (!platform.devices.empty()) return;
@@ -68,6 +70,7 @@ Choice choose_devices(const std::vector<PlatformFacts>& platforms, const Wishes&
 Selection select_devices(const std::string& selector, const std::string& task) {
     const char* environment = std::getenv("CLVR_DEVICE");
     const std::vector<PlatformFacts> platforms = list_platforms();
+    if (platforms.empty()) refuse_without_platform(unloadable_drivers());
     const std::vector<DeviceFacts> devices = flat(platforms);
     const bool asked = !selector.empty() || (environment && *environment);
     const Wishes wishes{selector, environment ? environment : "", asked ? std::nullopt : load_remembered(task)};

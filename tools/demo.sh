@@ -5,5 +5,5 @@ cd "$(dirname "$0")/.."
 tools/install_packages.sh build
 cmake --preset release -DCLVR_TESTS=OFF
 cmake --build --preset release
-build/release/clvr render demo:head -o head.png "$@"
+build/release/clvr render demo:head --spp 8 --denoise -o head.png "$@"
 echo "The picture is $PWD/head.png. For a volume of your own: $PWD/build/release/clvr render VOLUME -o OUT.png"

@@ -68,9 +68,9 @@ void ChannelPlan::check(const Frame& frame) const {
         if (there) continue;
         std::vector<std::string> has;
         for (const auto& [channel, values] : frame.channels) has.push_back(channel);
-        throw Error(ErrorKind::input,
-                    fmt::format("lacks {} that the model reads; it has {}",
-                                name == noise_channel ? "the attribute clvr.spp (--spp gives it)" : "channel " + name, fmt::join(has, " ")));
+        throw Error(ErrorKind::input, fmt::format("lacks {} that the model reads; it has {}",
+                                                  name == noise_channel ? "the attribute clvr.spp (--spp gives it)" : "channel " + name,
+                                                  fmt::join(has, " ")));
     }
 }
 

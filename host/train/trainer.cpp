@@ -127,8 +127,12 @@ struct Trainer::State {
             csv += fmt::format("{},{},{}\n", e + 1, checkpoint.records[e].loss, checkpoint.records[e].validation);
         const std::string stem = stem_of(output);
         write_atomically(training_csv(output), csv.data(), csv.size());
-        write_model(step.model(), stem + ".last.safetensors");
-        write_model(validation.empty() ? step.model() : checkpoint.best, output);
+        const auto noted = [&](Model m) {
+            m.notes["clvr.training"] = checkpoint.configuration;
+            return m;
+        };
+        write_model(noted(step.model()), stem + ".last.safetensors");
+        write_model(noted(validation.empty() ? step.model() : checkpoint.best), output);
         write_checkpoint(checkpoint, step.model(), stem + ".checkpoint");
     }
 

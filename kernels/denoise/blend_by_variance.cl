@@ -1,5 +1,5 @@
 // Back towards the noisy input where that has converged: what the denoiser changed beyond the input's own noise is its bias. With d = noisy - out, over a
-// 7x7 window, bias^2 = max(0, mean d^2 - mean variance), result = out + d bias^2 / (bias^2 + mean variance): the shrinkage with the least mean squared
+// 7x7 window, bias^2 = max(0, mean d^2 - 2 mean variance), result = out + d bias^2 / (bias^2 + mean variance): the shrinkage with the least mean squared
 // error (the positive-part James-Stein form).
 #define RADIUS 3
 
@@ -20,7 +20,7 @@ __kernel void blend_by_variance(__global const float* noisy, __global const floa
             variances += variance[at];
         }
     int at = (first + y) * width + x;
-    float bias = squares - variances;
+    float bias = fma(-2.0f, variances, squares);
     bias = bias > 0.0f ? bias : 0.0f;
     float total = bias + variances;
     float share = total > 0.0f ? bias / total : 0.0f;

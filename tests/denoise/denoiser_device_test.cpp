@@ -155,7 +155,7 @@ TEST(Denoiser, GoesBackToTheInputWhereThatHasConverged) {
                         variances += frame.at("variance.G")[at];
                     }
                 const std::size_t at = static_cast<std::size_t>(y) * width + x;
-                const double bias = std::max(0.0, squares - variances), total = bias + variances;
+                const double bias = std::max(0.0, squares - 2 * variances), total = bias + variances;
                 const double share = total > 0 ? bias / total : 0, d = static_cast<double>(frame.at("G")[at]) - out.at("G")[at];
                 ASSERT_NEAR(done.at("G")[at], out.at("G")[at] + d * share, 1e-5) << x << " " << y << " " << level;
                 if (level == 0) {
