@@ -69,9 +69,10 @@ TEST_F(Bench, MeasuresAndWrites) {
 
 TEST_F(Bench, AWrongResultIsSaid) { // the stage reads its kernel from a folder where a sign is turned
     std::filesystem::create_directories(home.path() / "kernels/probe");
-    std::ofstream(home.path() / "kernels/probe/triad.cl") << "kernel void triad(global const float4* a, global const float4* b, global "
-                                                             "float4* to, float s, uint n) { uint i = get_global_id(0); "
-                                                             "if (i < n) to[i] = a[i] - s * b[i]; }";
+    std::ofstream(home.path() / "kernels/probe/triad.cl") << "#include \"lib/stream.clh\"\n"
+                                                             "kernel void triad(global const vfloat* a, global const vfloat* b, global "
+                                                             "vfloat* to, float s, uint vectors) { uint i = get_global_id(0); "
+                                                             "if (i < vectors) STREAM(fma((vfloat)(-s), b[i], a[i]), to + i); }";
     const Outcome o = run({"--tiny", "--device", "cpu", "--stage", "triad"}, {{"CLVR_KERNEL_DIR", file("kernels")}});
     EXPECT_EQ(o.exit_code, 0) << o.err;
     EXPECT_THAT(o.out, HasSubstr("wrong result: its bits differ"));

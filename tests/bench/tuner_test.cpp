@@ -129,7 +129,7 @@ const CompareJob job{{0, -1, 0, "x"}, {"GuideNet"}, {}, {{"packet", 8}}, 3};
 
 TEST(FakeChild, AnswersCrashesHangsAndComesBack) {
     Child child({"/bin/sh", "-c",
-                 "while read line; do case \"$line\" in *crash*) kill -SEGV $$;; *hang*) sleep 60;; *leave*) exit 7;; *big*) head -c "
+                 "while read line; do case \"$line\" in *crash*) kill -SEGV $$;; *hang*) exec sleep 60;; *leave*) exit 7;; *big*) head -c "
                  "300000 /dev/zero | tr '\\0' x; "
                  "echo;; *) echo \"got $line\";; esac; done"});
     EXPECT_EQ(child.ask("one", 10).text, "got one");
@@ -155,7 +155,7 @@ TEST(FakeChild, ThatCannotBeStarted) {
 
 TEST(FakeChild, BadAnswersBecomeErrors) {
     for (const std::string script :
-         {"while read l; do echo nonsense; done", "while read l; do echo '{}'; done", "kill -ABRT $$", "sleep 60"}) {
+         {"while read l; do echo nonsense; done", "while read l; do echo '{}'; done", "kill -ABRT $$", "exec sleep 60"}) {
         Child child({"/bin/sh", "-c", script});
         const Verdict v = ask_verdict(child, job, 0.3);
         EXPECT_EQ(v.status, Status::error) << script;

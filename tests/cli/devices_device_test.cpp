@@ -113,7 +113,7 @@ TEST_F(Program, KernelThatDoesNotBuildIsShownWithTheCompilersLog) {
 /// In the middle: the volume is on the device already when the paths want memory.
 TEST_F(Program, OutOfDeviceMemoryIsOneLineAndLeavesNoFile) {
     const Outcome outcome =
-        run({"render", ball(), "--size", "512x512", "--spp", "1", "-o", (home.path() / "x.png").string()}, {{"CLVR_MAX_MEMORY", "3M"}});
+        run({"render", ball(), "--size", "512x512", "--spp", "1", "--memory", "600K", "-o", (home.path() / "x.png").string()});
     EXPECT_EQ(outcome.exit_code, 5) << outcome.err;
     EXPECT_THAT(outcome.err, AllOf(HasSubstr(" wants "), HasSubstr("--memory")));
     EXPECT_FALSE(std::filesystem::exists(home.path() / "x.png"));

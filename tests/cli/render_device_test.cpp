@@ -252,7 +252,8 @@ TEST_F(Render, GoesOnWithoutADeviceThatFails) {
         for (const char* part : {".1", ".2"}) {
             const Outcome o = faulty(fault + ("@" + index) + part);
             EXPECT_EQ(o.exit_code, 0) << fault << part << ": " << o.err;
-            EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
+            const bool builds = std::string(fault) != "build:render/shade"; // else PoCL has a line of its own: "1 error generated."
+            EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), builds ? 1 : 2) << o.err;
             EXPECT_THAT(o.err, AllOf(HasSubstr("clvr: warning: part "), HasSubstr("left out")));
             EXPECT_EQ(hash("a.exr"), hash("one.exr")) << fault << part;
         }
