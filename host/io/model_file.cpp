@@ -131,7 +131,7 @@ TensorFile tensors_of(const Model& m) {
 
 Model read_model(const std::string& path) {
     std::error_code failed;
-    if (path != "default" || std::filesystem::exists(path, failed)) return model_of(read_tensors(path), path);
+    if (path != "default" || std::filesystem::is_regular_file(path, failed)) return model_of(read_tensors(path), path);
     const auto found = embedded_models().find("default.safetensors");
     if (found == embedded_models().end())
         throw Error(ErrorKind::usage, "is not inside this build: add --model FILE, as `clvr train` writes it", "the default model");
