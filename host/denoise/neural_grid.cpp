@@ -47,6 +47,7 @@ Convolution::Convolution(Device& device, const std::string& stage, int in, int o
                                     {"CLVR_WIDTH", std::to_string(width)},
                                     {"CLVR_VECTORS", std::to_string(vectors)},
                                     {"CLVR_BLOCK", std::to_string(block)}});
+    while (group_.x * group_.y > kernel_.max_local_items()) (group_.y > 1 ? group_.y : group_.x) /= 2; // rusticl on llvmpipe: 32
     pack_ = device.kernel("denoise/pack_weights");
     const std::size_t taps = static_cast<std::size_t>(kernel) * kernel;
     std::vector<std::int32_t> from;
