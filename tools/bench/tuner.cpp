@@ -45,7 +45,7 @@ private:
 
     bool one_way(const Knob& knob, const std::vector<int>& values, int start, Tunables& best) {
         bool better = false;
-        int base = start;
+        int base = start, idle = 0; // values in a row that were no better
         for (const int value : values) {
             if (out_of_time()) {
                 if (result_.left_out.empty() || result_.left_out.back() != knob.name) result_.left_out.push_back(knob.name);
@@ -59,11 +59,12 @@ private:
             result_.tuning.evidence.push_back(line_of(knob.name, value, knob, v, base));
             if (v.status != Status::ok) break;
             if (v.speedup < worthwhile + v.spread) {
-                if (v.speedup < 1 / worthwhile) break; // it gets slower that way
+                if (v.speedup < 1 / worthwhile || ++idle == 2) break; // it gets slower that way, or stays as it is
                 continue;
             }
             best = candidate;
             base = value;
+            idle = 0;
             better = true;
         }
         return better;
