@@ -78,6 +78,18 @@ TEST(Tune, WhatLosesInTheEndGoesBack) {
     EXPECT_THAT(t.tuning.evidence, Contains(HasSubstr("goes back")));
 }
 
+TEST(Tune, WhatGainsNothingInTheEndGoesBack) {
+    const Evaluate evaluate = [](const Tunables& base, const Tunables& candidate, const std::vector<std::string>&) {
+        const bool walk = value(candidate, 4) != 16 && base.empty() && value(candidate, 4) != 8;
+        static int asked;
+        if (value(candidate, 4) == 8) return Verdict{Status::ok, "", ++asked == 1 ? 1.1 : 1.0, 0, false};
+        return Verdict{Status::ok, "", walk ? 0.9 : 0.8, 0, false};
+    };
+    const TunedDevice t = tune({knob}, {}, evaluate, never_late, 1);
+    EXPECT_EQ(t.tuning.values, Tunables());
+    EXPECT_THAT(t.tuning.evidence, Contains(HasSubstr("k goes back: nothing was gained")));
+}
+
 TEST(Tune, EndsInTime) {
     double now = 0;
     const Evaluate slow = [&](const Tunables&, const Tunables&, const std::vector<std::string>&) {

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace clvr::bench {
 namespace {
 
 constexpr double worthwhile = 1.02; // faster than this, and by more than the spread, or it is noise
+constexpr double a_gain = 1.01;     // in the end something of a tunable's stages must be faster by so much
 constexpr double no_loss = 0.99;    // in the end nothing may be slower than this
 
 std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
@@ -45,7 +47,7 @@ private:
 
     bool one_way(const Knob& knob, const std::vector<int>& values, int start, Tunables& best) {
         bool better = false;
-        int base = start;
+        int base = start, idle = 0; // values in a row that were no better
         for (const int value : values) {
             if (out_of_time()) {
                 if (result_.left_out.empty() || result_.left_out.back() != knob.name) result_.left_out.push_back(knob.name);
@@ -59,11 +61,12 @@ private:
             result_.tuning.evidence.push_back(line_of(knob.name, value, knob, v, base));
             if (v.status != Status::ok) break;
             if (v.speedup < worthwhile + v.spread) {
-                if (v.speedup < 1 / worthwhile) break; // it gets slower that way
+                if (v.speedup < 1 / worthwhile || ++idle == 2) break; // it gets slower that way, or stays as it is
                 continue;
             }
             best = candidate;
             base = value;
+            idle = 0;
             better = true;
         }
         return better;
@@ -88,6 +91,13 @@ TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Ev
     };
     for (const Knob& knob : knobs)
         if (changed(knob)) stages.insert(knob.stages.begin(), knob.stages.end());
+    std::map<std::string, double> gained;
+    const auto put_back = [&](const Knob& knob, const std::string& why) {
+        result.tuning.evidence.push_back(fmt::format("{} goes back: {}", knob.name, why));
+        best.erase(knob.name);
+        const auto before = start.find(knob.name);
+        if (before != start.end()) best.insert(*before);
+    };
     for (const std::string& stage : stages) {
         if (best == start) break;
         const Verdict v = evaluate(start, best, {stage});
@@ -95,16 +105,16 @@ TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Ev
             v.status == Status::ok
                 ? fmt::format("in the end: {:.3f} x as fast as before in {} (+-{:.1f} %)", v.speedup, stage, 100 * v.spread)
                 : fmt::format("in the end: {} in {}: {}", status_name(v.status), stage, v.reason));
+        gained[stage] = v.speedup;
         if (v.status == Status::ok && v.speedup >= no_loss) continue;
-        for (const Knob& knob : knobs) {
-            if (std::find(knob.stages.begin(), knob.stages.end(), stage) == knob.stages.end()) continue;
-            if (!changed(knob)) continue;
-            result.tuning.evidence.push_back(fmt::format("{} goes back: {} lost", knob.name, stage));
-            best.erase(knob.name);
-            const auto before = start.find(knob.name);
-            if (before != start.end()) best.insert(*before);
-        }
+        for (const Knob& knob : knobs)
+            if (changed(knob) && std::find(knob.stages.begin(), knob.stages.end(), stage) != knob.stages.end())
+                put_back(knob, stage + " lost");
     }
+    for (const Knob& knob : knobs)
+        if (changed(knob) &&
+            std::none_of(knob.stages.begin(), knob.stages.end(), [&](const std::string& stage) { return gained[stage] >= a_gain; }))
+            put_back(knob, "nothing was gained");
     result.tuning.values = best;
     return result;
 }
