@@ -1,6 +1,6 @@
 // The same bits from other compilers and interpreters: PoCL's two ways to make work-groups, contraction left on, Oclgrind, Mesa's rusticl.
-#include "runtime/embedded.hpp"
 #include "tests/cli/conformance.hpp"
+#include "tests/contracting_kernels.hpp"
 
 namespace clvr {
 namespace {
@@ -14,14 +14,7 @@ TEST_F(OtherCompilers, PoclLoopsOverWorkItems) {
 
 TEST_F(OtherCompilers, PoclContracts) {
     int allowed = 0;
-    for (const auto& [path, text] : embedded_kernels()) {
-        std::string contracted = text;
-        const std::string off = "FP_CONTRACT OFF";
-        if (path.rfind("probe/", 0) != 0) // the trust probe finds out what the compiler does
-            for (std::size_t at; (at = contracted.find(off)) != std::string::npos; ++allowed)
-                contracted.replace(at, off.size(), "FP_CONTRACT ON");
-        home.write("kernels/" + path, contracted);
-    }
+    for (const auto& [path, text] : contracting_kernels(allowed)) home.write("kernels/" + path, text);
     ASSERT_GT(allowed, 1);
     expect_picture({{"CLVR_KERNEL_DIR", (home.path() / "kernels").string()}}, {"--device", "portable"});
 }
