@@ -1,5 +1,6 @@
 #include "host/experiment/ablation.hpp"
 #include "host/eval/evaluation_json.hpp"
+#include "host/experiment/settled_folder.hpp"
 #include "host/experiment/stage_times.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/frame_file.hpp"
@@ -103,14 +104,8 @@ void check_patches(const AblationSettings& s) {
 }
 
 void begin_folder(const std::string& settings, const std::string& folder) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed) throw Error(ErrorKind::input, fmt::format("cannot be made: {}", failed.message()), folder);
-    const std::string path = (fs::path(folder) / "settings.json").string();
-    if (!fs::exists(path)) return write_text(settings, path);
-    if (read_text(path) != settings)
-        throw Error(ErrorKind::input, "holds an ablation of other pairs or settings (its settings.json has them); name another folder",
-                    folder);
+    begin_settled_folder(folder, "settings.json", settings,
+                         "holds an ablation of other pairs or settings (its settings.json has them); name another folder");
 }
 
 /// The scores in a row's file; none where it is absent.

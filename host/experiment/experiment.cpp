@@ -2,6 +2,7 @@
 #include "host/eval/evaluation_json.hpp"
 #include "host/experiment/measurement.hpp"
 #include "host/experiment/pairs_folder.hpp"
+#include "host/experiment/settled_folder.hpp"
 #include "host/experiment/stage_times.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/model_file.hpp"
@@ -26,15 +27,8 @@ void write_text(const std::string& text, const std::string& path) { write_atomic
 
 /// Makes the folder, or checks that it is this experiment's.
 void begin_folder(const std::string& settings, const std::string& folder) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed) throw Error(ErrorKind::input, fmt::format("cannot be made: {}", failed.message()), folder);
-    const std::string path = (fs::path(folder) / "experiment.json").string();
-    if (!fs::exists(path)) return write_text(settings, path);
-    if (read_text(path) != settings)
-        throw Error(ErrorKind::input,
-                    "holds an experiment with other settings (its experiment.json has them); name another folder, or remove this one",
-                    folder);
+    begin_settled_folder(folder, "experiment.json", settings,
+                         "holds an experiment with other settings (its experiment.json has them); name another folder, or remove this one");
 }
 
 /// A folder with an experiment, and the stages that fill it.

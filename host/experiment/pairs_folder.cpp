@@ -1,4 +1,5 @@
 #include "host/experiment/pairs_folder.hpp"
+#include "host/experiment/settled_folder.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/frame_file.hpp"
 #include "host/io/scene_file.hpp"
@@ -35,13 +36,8 @@ std::optional<Frame> frame_of(Renderer& renderer, const Scene& scene, const std:
 } // namespace
 
 void begin_pairs_folder(const std::string& folder, const PairsPlan& plan) {
-    std::error_code failed;
-    fs::create_directories(folder, failed);
-    if (failed) throw Error(ErrorKind::input, fmt::format("cannot be made: {}", failed.message()), folder);
-    const std::string path = (fs::path(folder) / "pairs.json").string(), text = to_json(plan);
-    if (!fs::exists(path)) return write_atomically(path, text.data(), text.size());
-    if (read_text(path) != text)
-        throw Error(ErrorKind::input, "holds pairs made with other settings; name another folder, or remove this one", folder);
+    begin_settled_folder(folder, "pairs.json", to_json(plan),
+                         "holds pairs made with other settings; name another folder, or remove this one");
 }
 
 bool pairs_complete(const std::string& folder) {
