@@ -14,7 +14,7 @@ static inline void store_ends(Flights* f, vmask collided, __global float4* origi
 }
 
 __kernel void free_flight(VOLUME_ARGS, __constant RenderParams* render, PATH_ARGS, __global const uint* active, uint count, uint bounce) {
-    Volume vol = VOLUME_HERE;
+    VOLUME_HERE(vol);
     Flights f;
     begin_flights(&f, count);
     vmask collided = (vmask)(0);

@@ -107,7 +107,7 @@ static inline void march_ray(const Volume* vol, __constant RenderParams* render,
 
 // Writes planes of `stride` values at pixel - first_pixel. Features: albedo RGB, normal XYZ, depth, opacity, depth deviation, half depth. dvr, mip: R G B A.
 __kernel void march(VOLUME_ARGS, __constant RenderParams* render, uint first_pixel, uint pixels, uint stride, __global float* planes) {
-    Volume vol = VOLUME_HERE;
+    VOLUME_HERE(vol);
     uint first = (uint)get_global_id(0) * CLVR_WIDTH;
     if (first >= pixels) return;
     float fx[CLVR_WIDTH], fy[CLVR_WIDTH];
@@ -149,7 +149,7 @@ __kernel void march(VOLUME_ARGS, __constant RenderParams* render, uint first_pix
     int count = 4;
 #else
     // The peak's place in the transfer function's domain, as grey.
-    vfloat grey = v_clamp(table_index(volume_params, s.peak) / (float)CLVR_TABLE_LAST, zero, (vfloat)(1.0f));
+    vfloat grey = v_clamp(table_index(vol.p, s.peak) / (float)CLVR_TABLE_LAST, zero, (vfloat)(1.0f));
     grey = v_select(s.met, grey, zero);
     vfloat out[4] = {grey, grey, grey, v_select(s.met, (vfloat)(1.0f), zero)};
     int count = 4;

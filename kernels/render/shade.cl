@@ -11,7 +11,7 @@
 static inline float greatest(Vec3 v) { return v_max(v_max(v.x, v.y), v.z); }
 
 __kernel void shade(VOLUME_ARGS, LIGHT_ARGS, __global const float* lobe, PATH_ARGS, __global const uint* active, __global uint* state, uint count, uint bounce) {
-    Volume vol = VOLUME_HERE;
+    VOLUME_HERE(vol);
     Light light = LIGHT_HERE;
     uint entry = (uint)get_global_id(0);
     if (entry >= count) return;
@@ -39,10 +39,10 @@ __kernel void shade(VOLUME_ARGS, LIGHT_ARGS, __global const float* lobe, PATH_AR
 
     bool at_surface = false;
     Surface surface;
-    if (volume_params->shading != 1) {
+    if (vol.p->shading != 1) {
         Vec3 gradient = world_gradient(&vol, p);
         float steepness = sqrt(inner3(gradient, gradient));
-        at_surface = v_uniform(a.x) < surface_chance(volume_params, steepness);
+        at_surface = v_uniform(a.x) < surface_chance(vol.p, steepness);
         if (at_surface) surface = make_surface(lobe, scaled(gradient, -1.0f / steepness), negated(dir), albedo);
     }
 

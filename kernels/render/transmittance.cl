@@ -17,7 +17,7 @@ static inline void add_light(Flights* f, vfloat transmitted, __global const floa
 }
 
 __kernel void transmittance(VOLUME_ARGS, __constant RenderParams* render, PATH_ARGS, __global const uint* shadowed, uint count, uint bounce) {
-    Volume vol = VOLUME_HERE;
+    VOLUME_HERE(vol);
     Flights f;
     begin_flights(&f, count);
     vfloat transmitted = (vfloat)(1.0f);

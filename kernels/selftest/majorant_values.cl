@@ -5,9 +5,9 @@
 // in: planes origin x y z [index], direction x y z [world, unit] of `stride` rays. excess: greatest opacity - majorant of a ray's stops (-1 without one);
 // stops: their number. `depth`: optical depth between stops.
 __kernel void majorant_values(VOLUME_ARGS, __global const float* in, __global float* excess, __global int* stops, float depth, uint stride, uint packets) {
+    VOLUME_HERE(vol);
     size_t packet = get_global_id(0);
     if (packet >= packets) return;
-    Volume vol = VOLUME_HERE;
     size_t at = packet * CLVR_WIDTH;
     Vec3 origin = {v_load(in + at), v_load(in + stride + at), v_load(in + 2 * stride + at)};
     Vec3 heading = {v_load(in + 3 * stride + at), v_load(in + 4 * stride + at), v_load(in + 5 * stride + at)};

@@ -3,9 +3,9 @@
 
 // in: planes x, y, z of `stride` values; out: planes stored value, opacity, red, green, blue, gradient x, y, z.
 __kernel void volume_values(VOLUME_ARGS, __global const float* in, __global float* out, uint stride, uint packets) {
+    VOLUME_HERE(vol);
     size_t packet = get_global_id(0);
     if (packet >= packets) return;
-    Volume vol = VOLUME_HERE;
     size_t at = packet * CLVR_WIDTH;
     Vec3 p = {v_load(in + at), v_load(in + stride + at), v_load(in + 2 * stride + at)};
     vfloat stored = stored_value(&vol, p);
