@@ -16,7 +16,7 @@ namespace clvr {
 namespace {
 
 struct Options {
-    std::vector<std::string> folders, channels = default_settings().channels;
+    std::vector<std::string> folders, channels;
     std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant", convolution = "direct";
     TrainerConfig trainer;
     int hidden = 20, kernel = 5;
@@ -37,7 +37,8 @@ Loss loss_of(const Options& o) {
 Model start_of(const Options& o) {
     if (!o.init.empty()) return read_model(o.init);
     Model m = o.plain ? Model() : default_settings();
-    m.channels = o.channels;
+    if (!o.channels.empty()) m.channels = o.channels;
+    if (m.channels.empty()) m.channels = reference_channels();
     m.hidden = o.hidden;
     m.kernel = o.kernel;
     if (o.no_demodulation) m.demodulation = false;
@@ -126,7 +127,9 @@ void add_train_command(CLI::App& app) {
                   "Convolutions: direct (clvr's kernels, the same bits on every device), or clblast (im2col and CLBlast's SGEMM) [direct]")
         ->group("Training");
     c->add_option("--micro-batch", t.step.micro_batch, "Patches on the device at once; 0: what fits [0]")->group("Training");
-    c->add_option("--channels", o->channels, "Input channels by their names in frames [R G B albedo normal depth]")
+    c->add_option(
+         "--channels", o->channels,
+         "Input channels by their names in frames; default: all that clvr renders and \"noise\", with --plain R G B, albedo, normal, depth")
         ->delimiter(',')
         ->group("Model");
     c->add_option("--hidden", o->hidden, "Hidden channels [20]")->group("Model");

@@ -115,28 +115,31 @@ namespace {
 
 /// Takes the result back towards the noisy input where that has converged (kernels/denoise/blend_by_variance.cl), in bands of rows.
 void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
-    constexpr int radius = 3, band = 256;
-    Kernel kernel = device.kernel("denoise/blend_by_variance");
+    constexpr int radius = 7, band = 256; // the radius of the kernels
+    Kernel sum = device.kernel("denoise/blend_sums"), blend = device.kernel("denoise/blend_by_variance");
     const auto finite = [](std::vector<float> v) {
         for (float& x : v) x = std::isfinite(x) ? x : 0;
         return v;
     };
+    const auto width = static_cast<std::size_t>(noisy.width);
     for (const char* c : colours) {
         std::vector<float>& to = done.channel(c);
         const std::vector<float> from = to;
         for (int y = 0; y < noisy.height; y += band) {
             const int low = std::max(0, y - radius), count = std::min(band, noisy.height - y),
-                      high = std::min(noisy.height, y + count + radius);
-            const auto rows = [&](const std::vector<float>& plane) {
+                      rows = std::min(noisy.height, y + count + radius) - low;
+            const auto upload = [&](const std::vector<float>& plane) {
                 const auto begin = plane.begin() + static_cast<std::ptrdiff_t>(low) * noisy.width;
-                return device.upload(finite({begin, begin + static_cast<std::ptrdiff_t>(high - low) * noisy.width}), "rows to blend");
+                return device.upload(finite({begin, begin + static_cast<std::ptrdiff_t>(rows) * noisy.width}), "rows to blend");
             };
-            const std::size_t pixels = static_cast<std::size_t>(count) * noisy.width;
-            const Buffer result = device.buffer(pixels * 4, "blended rows");
-            device.launch(kernel, {static_cast<std::size_t>(noisy.width), static_cast<std::size_t>(count)}, kernel.group(64), {},
-                          rows(noisy.at(c)), rows(noisy.at(std::string("variance.") + c)), rows(from), noisy.width, high - low, y - low,
-                          count, result);
-            const std::vector<float> blended = device.download<float>(result, pixels);
+            const Buffer before = upload(noisy.at(c)), variance = upload(noisy.at(std::string("variance.") + c)), after = upload(from),
+                         sums = device.buffer(rows * width * 8, "sums of rows to blend"),
+                         result = device.buffer(count * width * 4, "blended rows");
+            device.launch(sum, {width, static_cast<std::size_t>(rows)}, sum.group(64), {}, before, variance, after, noisy.width, rows,
+                          sums);
+            device.launch(blend, {width, static_cast<std::size_t>(count)}, blend.group(64), {}, before, after, sums, noisy.width, rows,
+                          y - low, count, result);
+            const std::vector<float> blended = device.download<float>(result, count * width);
             std::copy(blended.begin(), blended.end(), to.begin() + static_cast<std::ptrdiff_t>(y) * noisy.width);
         }
     }

@@ -50,6 +50,7 @@ std::vector<std::string> reference_channels() {
 Model default_settings() {
     Model m;
     m.channels = reference_channels();
+    m.channels.insert(m.channels.end(), {"opacity.A", "depth.deviation", "depth.half", "noise"});
     m.exposure = true;
     m.albedo_floor = 1.0f / 32;
     m.opacity_weight = true;

@@ -148,8 +148,8 @@ TEST(Denoiser, GoesBackToTheInputWhereThatHasConverged) {
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) {
                 double squares = 0, variances = 0;
-                for (int j = std::max(0, y - 3); j <= std::min(height - 1, y + 3); ++j)
-                    for (int i = std::max(0, x - 3); i <= std::min(width - 1, x + 3); ++i) {
+                for (int j = std::max(0, y - 7); j <= std::min(height - 1, y + 7); ++j)
+                    for (int i = std::max(0, x - 7); i <= std::min(width - 1, x + 7); ++i) {
                         const std::size_t at = static_cast<std::size_t>(j) * width + i;
                         squares += std::pow(static_cast<double>(frame.at("G")[at]) - out.at("G")[at], 2);
                         variances += frame.at("variance.G")[at];
