@@ -115,7 +115,7 @@ namespace {
 
 /// Takes the result back towards the noisy input where that has converged (kernels/denoise/blend_by_variance.cl), in bands of rows.
 void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
-    constexpr int radius = 7, band = 256; // the radius of the kernels
+    constexpr int radius = 10, band = 256; // the radius of the kernels
     Kernel sum = device.kernel("denoise/blend_sums"), blend = device.kernel("denoise/blend_by_variance");
     const auto finite = [](std::vector<float> v) {
         for (float& x : v) x = std::isfinite(x) ? x : 0;
