@@ -93,7 +93,7 @@ private:
         initialise(start, s_.training.seed);
         const bool finished = times_.time("training", [&] {
             control_.progress("training", 0, "reading");
-            Trainer trainer(devices_.front(), start, s_.training, {path("train")}, "", path("model.safetensors"),
+            Trainer trainer(devices_, start, s_.training, {path("train")}, "", path("model.safetensors"),
                             fs::exists(path("model.checkpoint")));
             return trainer.run(control_.interrupted, [&](const TrainerProgress& p) {
                 control_.progress("training", p.done, fmt::format("loss {:.5f}", p.loss));
