@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <numeric>
 
@@ -116,6 +117,9 @@ namespace {
 /// Takes the result back towards the noisy input where that has converged (kernels/denoise/blend_by_variance.cl), in bands of rows.
 void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
     constexpr int radius = 10, band = 256; // the radius of the kernels
+    const auto spp = noisy.attributes.find("clvr.spp");
+    const int samples = spp == noisy.attributes.end() ? 4 : std::max(2, std::atoi(spp->second.c_str())); // 4: another renderer's, unknown
+    const float times = static_cast<float>(samples) / static_cast<float>(samples - 1);
     Kernel sum = device.kernel("denoise/blend_sums"), blend = device.kernel("denoise/blend_by_variance");
     const auto finite = [](std::vector<float> v) {
         for (float& x : v) x = std::isfinite(x) ? x : 0;
@@ -138,7 +142,7 @@ void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
             device.launch(sum, {width, static_cast<std::size_t>(rows)}, sum.group(64), {}, before, variance, after, noisy.width, rows,
                           sums);
             device.launch(blend, {width, static_cast<std::size_t>(count)}, blend.group(64), {}, before, after, sums, noisy.width, rows,
-                          y - low, count, result);
+                          y - low, count, times, result);
             const std::vector<float> blended = device.download<float>(result, count * width);
             std::copy(blended.begin(), blended.end(), to.begin() + static_cast<std::ptrdiff_t>(y) * noisy.width);
         }

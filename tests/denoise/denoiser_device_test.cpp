@@ -138,8 +138,11 @@ TEST(Denoiser, GoesBackToTheInputWhereThatHasConverged) {
     Device device = test_device();
     Denoiser denoiser(device, test_model());
     const Frame out = denoiser.denoise(plain);
-    for (const float level : {0.0f, 0.05f, 1e6f}) {
+    const std::pair<float, const char*> cases[] = {{0.0f, "4"}, {0.05f, "2"}, {0.05f, "5"}, {0.05f, nullptr}, {1e6f, "64"}};
+    for (const auto& [level, spp] : cases) {
         Frame frame = plain;
+        if (spp) frame.attributes["clvr.spp"] = spp;
+        const double n = spp ? std::atof(spp) : 4;
         for (const char* c : {"R", "G", "B"}) {
             std::vector<float>& v = frame.channel(std::string("variance.") + c);
             for (std::size_t i = 0; i < v.size(); ++i) v[i] = level * static_cast<float>(i % 5);
@@ -155,7 +158,7 @@ TEST(Denoiser, GoesBackToTheInputWhereThatHasConverged) {
                         variances += frame.at("variance.G")[at];
                     }
                 const std::size_t at = static_cast<std::size_t>(y) * width + x;
-                const double bias = std::max(0.0, squares - 1.25 * variances), total = bias + variances;
+                const double bias = std::max(0.0, squares - n / (n - 1) * variances), total = bias + variances;
                 const double share = total > 0 ? bias / total : 0, d = static_cast<double>(frame.at("G")[at]) - out.at("G")[at];
                 ASSERT_NEAR(done.at("G")[at], out.at("G")[at] + d * share, 2e-5) << x << " " << y << " " << level;
                 if (level == 0) {
