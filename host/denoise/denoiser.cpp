@@ -117,14 +117,7 @@ namespace {
 /// Takes the result back towards the noisy input where that has converged (kernels/denoise/blend_by_variance.cl), in bands of rows.
 void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
     constexpr int radius = 10, band = 256; // the radius of the kernels
-    const auto spp = noisy.attributes.find("clvr.spp");
-    const int samples = spp == noisy.attributes.end() ? 4 : std::max(2, std::atoi(spp->second.c_str())); // 4: another renderer's, unknown
-    const float times = static_cast<float>(samples) / static_cast<float>(samples - 1);
     Kernel sum = device.kernel("denoise/blend_sums"), blend = device.kernel("denoise/blend_by_variance");
-    const auto finite = [](std::vector<float> v) {
-        for (float& x : v) x = std::isfinite(x) ? x : 0;
-        return v;
-    };
     const auto width = static_cast<std::size_t>(noisy.width);
     for (const char* c : colours) {
         std::vector<float>& to = done.channel(c);
@@ -132,17 +125,24 @@ void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
         for (int y = 0; y < noisy.height; y += band) {
             const int low = std::max(0, y - radius), count = std::min(band, noisy.height - y),
                       rows = std::min(noisy.height, y + count + radius) - low;
-            const auto upload = [&](const std::vector<float>& plane) {
-                const auto begin = plane.begin() + static_cast<std::ptrdiff_t>(low) * noisy.width;
-                return device.upload(finite({begin, begin + static_cast<std::ptrdiff_t>(rows) * noisy.width}), "rows to blend");
+            const auto upload = [&](const auto& value_of) {
+                std::vector<float> values(rows * width);
+                for (std::size_t i = 0; i < values.size(); ++i) {
+                    const float v = value_of(low * width + i);
+                    values[i] = std::isfinite(v) ? v : 0;
+                }
+                return device.upload(values, "rows to blend");
             };
-            const Buffer before = upload(noisy.at(c)), variance = upload(noisy.at(std::string("variance.") + c)), after = upload(from),
-                         sums = device.buffer(rows * width * 8, "sums of rows to blend"),
+            const std::vector<float>& variances = noisy.at(std::string("variance.") + c);
+            const Buffer before = upload([&](std::size_t i) { return beauty_without_background(noisy, c, i); }),
+                         variance = upload([&](std::size_t i) { return variances[i]; }),
+                         after = upload([&](std::size_t i) { return from[i]; }),
+                         sums = device.buffer(rows * width * 16, "sums of rows to blend"),
                          result = device.buffer(count * width * 4, "blended rows");
             device.launch(sum, {width, static_cast<std::size_t>(rows)}, sum.group(64), {}, before, variance, after, noisy.width, rows,
                           sums);
             device.launch(blend, {width, static_cast<std::size_t>(count)}, blend.group(64), {}, before, after, sums, noisy.width, rows,
-                          y - low, count, times, result);
+                          y - low, count, result);
             const std::vector<float> blended = device.download<float>(result, count * width);
             std::copy(blended.begin(), blended.end(), to.begin() + static_cast<std::ptrdiff_t>(y) * noisy.width);
         }
@@ -184,16 +184,16 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
         done.channels["noisy.A"] = frame.at("A");
         done.channels["A"] = frame.at("opacity.A");
     }
-    const std::vector<float>* opacity = frame.has("opacity.A") ? &frame.at("opacity.A") : frame.has("A") ? &frame.at("A") : nullptr;
-    for (std::size_t c = 0; c < results.size(); ++c) {
-        const auto background = frame.channels.find(std::string("background.") + colours[c % 3]);
-        std::vector<float>& to = *results[c];
-        for (std::size_t i = 0; i < to.size(); ++i) {
-            to[i] = std::max(to[i] / params.exposure, 0.0f);
-            if (c < 3 && background != frame.channels.end() && opacity) to[i] += (1 - (*opacity)[i]) * background->second[i];
-        }
-    }
+    for (std::vector<float>* result : results)
+        for (float& v : *result) v = std::max(v / params.exposure, 0.0f);
     if (frame.has("variance.R") && frame.has("variance.G") && frame.has("variance.B")) blend_by_variance(s.device, frame, done);
+    const std::vector<float>* opacity = frame.has("opacity.A") ? &frame.at("opacity.A") : frame.has("A") ? &frame.at("A") : nullptr;
+    for (const char* c : colours) {
+        const auto background = frame.channels.find(std::string("background.") + c);
+        if (background == frame.channels.end() || !opacity) continue;
+        std::vector<float>& to = done.channel(c);
+        for (std::size_t i = 0; i < to.size(); ++i) to[i] += (1 - (*opacity)[i]) * background->second[i];
+    }
     done.attributes["clvr.denoised"] = "1";
     return done;
 }

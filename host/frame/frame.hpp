@@ -24,6 +24,9 @@ struct Frame {
         c.resize(pixels());
         return c;
     }
+    /// The opacity with which the picture is shown: A; null where it is opaque, as it has none or lies over a background (background.R ...;
+    /// A is the camera rays' opacity there, too).
+    const std::vector<float>* shown_alpha() const { return has("A") && !has("background.R") ? &at("A") : nullptr; }
 };
 
 /// SHA-256 (hex) over size, channel names in order and the bits of every pixel; attributes do not count.

@@ -61,7 +61,7 @@ Frame tonemapped(const Frame& frame, const Tonemap& tonemap) {
     const ToneCurve curve(tonemap);
     Frame display;
     display.width = frame.width, display.height = frame.height;
-    const std::vector<float>*r = &frame.at("R"), *g = &frame.at("G"), *b = &frame.at("B"), *a = frame.has("A") ? &frame.at("A") : nullptr;
+    const std::vector<float>*r = &frame.at("R"), *g = &frame.at("G"), *b = &frame.at("B"), *a = frame.shown_alpha();
     if (a) display.channels["A"] = *a;
     std::vector<float>* to[3] = {&display.channel("R"), &display.channel("G"), &display.channel("B")};
     for (std::size_t i = 0; i < frame.pixels(); ++i) {

@@ -29,7 +29,7 @@ std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap
     const ToneCurve curve(tonemap);
     for (const char* name : {"R", "G", "B"})
         if (!frame.has(name)) throw Error(ErrorKind::input, fmt::format("there is no picture to write: the frame has no channel {}", name));
-    const std::vector<float>*rgb[3] = {&frame.at("R"), &frame.at("G"), &frame.at("B")}, *alpha = frame.has("A") ? &frame.at("A") : nullptr;
+    const std::vector<float>*rgb[3] = {&frame.at("R"), &frame.at("G"), &frame.at("B")}, *alpha = frame.shown_alpha();
     const bool opaque = !alpha || std::all_of(alpha->begin(), alpha->end(), [](float a) { return a >= 1; });
     const std::size_t components = opaque ? 3 : 4;
 

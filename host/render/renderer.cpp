@@ -271,7 +271,7 @@ void Renderer::march(Frame& frame, bool features, const RenderControl& control) 
     if (!features) frame.attributes["clvr.spp"] = std::to_string(scene_.feature_samples);
 }
 
-/// Composites the picture over the background: C + (1 - A) B, alpha 1; B stays in the channels background.R/G/B.
+/// Composites the picture over the background: C + (1 - A) B; A stays, and B in the channels background.R/G/B.
 void Renderer::lay_background(Frame& frame) {
     if (scene_.background.kind == Background::Kind::transparent) return;
     std::vector<shared::float4> under(numbers_);
@@ -291,14 +291,13 @@ void Renderer::lay_background(Frame& frame) {
     std::array<std::vector<float>*, 3> color{&frame.channel("R"), &frame.channel("G"), &frame.channel("B")};
     std::array<std::vector<float>*, 3> below{&frame.channel("background.R"), &frame.channel("background.G"),
                                              &frame.channel("background.B")};
-    auto& alpha = frame.channel("A");
+    const auto& alpha = frame.at("A");
     for_pixels(numbers_, frame.width, frame.height, [&](std::uint32_t i, std::size_t at) {
         const float b[3] = {under[i].x, under[i].y, under[i].z};
         for (int k = 0; k < 3; ++k) {
             (*below[k])[at] = b[k];
             (*color[k])[at] += (1 - alpha[at]) * b[k];
         }
-        alpha[at] = 1;
     });
 }
 

@@ -13,10 +13,10 @@ namespace clvr::selftest {
 /// golden_picture.
 inline const std::map<std::string, std::string> golden_hashes{
     {"automatic", "1b6fe8327194affacfc7ad8f24bd9c827568424669319adbab1e6bc46399ae94"},
-    {"dvr", "730d603450250592a3f7daa30de636b007d3528b75bfd6bc12bc9d7994a90db5"},
-    {"gradient", "a0f807e28d0b4f21e1134d3e289bfaec4d6d41fa4fdf382cf8067b65bfb8bdad"},
+    {"dvr", "630c0fab5082d8f623c4dc4e367c1797aa4a20a12c1f03da8070c1a70ee8e561"},
+    {"gradient", "89e636a8473708b7aa54558cbfd560d1df469f624e18e8d540593f7fb44519f4"},
     {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
-    {"phase", "f91c27fa627945a7fa2b32b5fe4a50e2ce13e53fb2b855d0b5b967422bd8d17d"},
+    {"phase", "b9254adc49eaad83a3aa70966e58d088530851c7839813693306fff17b27e608"},
 };
 inline const std::string golden_denoised_hash = "9205f91e1739e53dfb87a880346d526beeb3c9a293c4b7be09465d7ffe8a15be";
 inline const std::string golden_picture_hash = "59015e21d81622232ac6b683610fedf326d1b82c7eb1ecb3414eaa7ea1f5e6a7";

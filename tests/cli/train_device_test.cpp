@@ -157,6 +157,14 @@ TEST_F(Learning, TrainsDenoisesAndCompares) {
     EXPECT_TRUE(read_exr(path("r.exr")).has("noisy.G"));
     EXPECT_TRUE(exists("r.png"));
 
+    const Outcome over = run({"render", path("ball_24x20x16_uint8.raw"), "--size", "30x26", "--spp", "1", "--denoise", "--model",
+                              path("m.safetensors"), "--background", "#4080c0", "-o", path("o.exr"), "-o", path("o.png")});
+    ASSERT_EQ(over.exit_code, 0) << over.err;
+    EXPECT_FALSE(read_picture(path("o.png")).has("A"));
+    const Frame clear = read_exr(path("r.exr")), laid = read_exr(path("o.exr"));
+    for (std::size_t i = 0; i < laid.pixels(); ++i)
+        ASSERT_NEAR(laid.at("G")[i], clear.at("G")[i] + (1 - clear.at("A")[i]) * laid.at("background.G")[i], 1e-4) << i;
+
     if (run({"devices", "--device", "cpu/2"}).exit_code == 0) {
         std::vector<std::string> parts = train;
         parts[3] = path("p.safetensors");

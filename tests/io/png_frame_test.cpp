@@ -181,6 +181,18 @@ TEST(PngFrameTest, ReadsBackAsLinearLight) {
     EXPECT_FALSE(clvr::read_png(folder / "b.png").has("A"));
 }
 
+TEST(PngFrameTest, IsOpaqueOverABackground) {
+    const Folder folder;
+    Frame f;
+    f.width = 3, f.height = 1;
+    f.channels = {
+        {"R", {0.5f, 0.25f, 0.75f}}, {"G", {1, 0, 0}}, {"B", {0.1f, 0.5f, 0}}, {"A", {1, 0.5f, 0}}, {"background.R", {0, 0, 0.75f}}};
+    write_png(f, {"none", 0}, folder / "a.png");
+    const Frame back = read_picture(folder / "a.png");
+    EXPECT_FALSE(back.has("A"));
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(back.at("R")[i], f.at("R")[i], 0.005) << i;
+}
+
 TEST(PngFrameTest, RefusesWhatIsNone) {
     const Folder folder;
     std::ofstream(folder / "a.png") << "no picture";
