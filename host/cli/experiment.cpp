@@ -207,7 +207,8 @@ void add_experiment_command(CLI::App& app) {
                               fmt::join(phantom_names(), ", ")))
         ->required();
     c->add_option("-o,--output", o->folder, "Folder to fill [SCENE-SCALE]")->type_name("DIR");
-    c->add_option("--scale", o->scale, "paper (the published protocol at full size), quick (a quarter of an hour on two cores) or tiny [quick]");
+    c->add_option("--scale", o->scale,
+                  "paper (the published protocol at full size), quick (a quarter of an hour on two cores) or tiny [quick]");
     c->add_flag("--dry-run", o->dry_run, "Only print what it would take: paths, bytes, time by a short probe");
     c->add_flag("--json", o->json, "Print JSON");
     c->add_option("--volume", o->volume, "This file as the scene's volume")->type_name("FILE")->group("Volume");
