@@ -18,7 +18,7 @@ inline const std::map<std::string, std::string> golden_hashes{
     {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
     {"phase", "b9254adc49eaad83a3aa70966e58d088530851c7839813693306fff17b27e608"},
 };
-inline const std::string golden_denoised_hash = "9205f91e1739e53dfb87a880346d526beeb3c9a293c4b7be09465d7ffe8a15be";
+inline const std::string golden_denoised_hash = "f96ec492ce7dc7c59752268c3ac332b6b87db09397b1cf84bb0eaa3f572694bf";
 inline const std::string golden_picture_hash = "59015e21d81622232ac6b683610fedf326d1b82c7eb1ecb3414eaa7ea1f5e6a7";
 
 /// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
