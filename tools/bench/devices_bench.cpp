@@ -28,12 +28,12 @@ void render(const std::vector<Device>& parts) {
     const PreparedVolume volume(make_phantom(first, "head", {Int3{88, 110, 116}}));
     Scene scene;
     scene.volume = "demo";
-    scene.width = scene.height = 128;
+    scene.width = scene.height = 256;
     scene.spp = 64;
     scene.features = false;
     Renderer one({parts.front()}, volume, scene), both(parts, volume, scene);
     compare(
-        "render, 128x128, 64 spp", 1.7, [&] { one.render(); }, [&] { both.render(); });
+        "render, 256x256, 64 spp", 1.7, [&] { one.render(); }, [&] { both.render(); });
 }
 
 void train(const std::vector<Device>& parts) {
