@@ -29,7 +29,8 @@ public:
         shape_.width = frame.width, shape_.height = frame.height, shape_.pad = pad, shape_.step = 1;
         shape_.row = (frame.width + width_ - 1) / width_ * width_ + 2 * pad;
         shape_.plane = shape_.row * (frame.height + 2 * pad);
-        opacity_ = frame.has("opacity.A") ? &frame.at("opacity.A") : frame.has("A") ? &frame.at("A") : nullptr;
+        opacity_ = channel(frame.has("opacity.A") ? "opacity.A" : "A");
+        for (int c = 0; c < 3; ++c) albedo_[c] = channel(features[1 + c]);
         upload();
     }
 
@@ -61,13 +62,13 @@ public:
         f.width = shape_.width, f.height = shape_.height, f.attributes = frame_.attributes;
         for (int c = 0; c < 3; ++c) {
             std::vector<float>& to = f.channel(colours[c]);
-            const std::string background = std::string("background.") + colours[c];
+            const float* const background = channel(std::string("background.") + colours[c]);
             for (std::size_t i = 0; i < to.size(); ++i) {
                 to[i] = std::max(all[c * plane() + at(i)] * albedo(c, i) * opacity(i), 0.0f);
-                if (frame_.has(background)) to[i] += (1 - opacity(i)) * finite(frame_.at(background)[i]);
+                if (background) to[i] += (1 - opacity(i)) * finite(background[i]);
             }
         }
-        if (opacity_) f.channels["A"] = *opacity_;
+        if (opacity_) f.channels["A"].assign(opacity_, opacity_ + f.pixels());
         return f;
     }
 
@@ -76,43 +77,41 @@ private:
     const Frame& frame_;
     shared::FilterParams shape_{};
     int width_ = 1;
-    const std::vector<float>* opacity_ = nullptr;
+    const float *opacity_ = nullptr, *albedo_[3] = {}; // of the frame, if it has them
     Buffer features_;
+
+    const float* channel(const std::string& name) const { return frame_.has(name) ? frame_.at(name).data() : nullptr; }
 
     std::size_t plane() const { return static_cast<std::size_t>(shape_.plane); }
     std::size_t at(std::size_t i) const {
         const std::size_t w = static_cast<std::size_t>(shape_.width);
         return (i / w + pad) * static_cast<std::size_t>(shape_.row) + pad + i % w;
     }
-    float opacity(std::size_t i) const { return opacity_ ? finite((*opacity_)[i]) : 1; }
-    float albedo(int c, std::size_t i) const {
-        const char* name = features[1 + c];
-        return frame_.has(name) ? std::max(finite(frame_.at(name)[i]), albedo_floor) : 1;
-    }
+    float opacity(std::size_t i) const { return opacity_ ? finite(opacity_[i]) : 1; }
+    float albedo(int c, std::size_t i) const { return albedo_[c] ? std::max(finite(albedo_[c][i]), albedo_floor) : 1; }
 
     void upload() {
         std::vector<float> planes(CLVR_FILTER_FEATURES * plane());
         for (std::size_t i = 0; i < frame_.pixels(); ++i) planes[at(i)] = opacity(i);
         for (int k = 1; k < CLVR_FILTER_FEATURES; ++k)
-            if (frame_.has(features[k]))
-                for (std::size_t i = 0; i < frame_.pixels(); ++i)
-                    planes[static_cast<std::size_t>(k) * plane() + at(i)] = finite(frame_.at(features[k])[i]);
+            if (const float* const values = channel(features[k]))
+                for (std::size_t i = 0; i < frame_.pixels(); ++i) planes[static_cast<std::size_t>(k) * plane() + at(i)] = finite(values[i]);
         planes.resize(planes.size() + 16); // rows are read 16 pixels at once
         features_ = device_.upload(planes, "features");
 
-        has_variance = frame_.has("variance.R") && frame_.has("variance.G") && frame_.has("variance.B");
+        const float shares[] = {0.2126f, 0.7152f, 0.0722f}, *variance[3];
+        for (int c = 0; c < 3; ++c) variance[c] = channel(std::string("variance.") + colours[c]);
+        has_variance = variance[0] && variance[1] && variance[2];
         planes.assign(4 * plane() + 16, 0);
-        for (std::size_t i = 0; i < frame_.pixels(); ++i) {
-            float variance = 0;
-            const float shares[] = {0.2126f, 0.7152f, 0.0722f};
-            for (int c = 0; c < 3; ++c) {
-                const float divisor = albedo(c, i) * std::max(opacity(i), opacity_floor);
-                planes[static_cast<std::size_t>(c) * plane() + at(i)] = finite(beauty_without_background(frame_, colours[c], i) / divisor);
-                if (!has_variance) continue;
-                const float share = shares[c] / divisor;
-                variance += share * share * finite(frame_.at(std::string("variance.") + colours[c])[i]);
+        float* const luminance_variance = &planes[3 * plane()];
+        for (int c = 0; c < 3; ++c) {
+            const BeautyWithoutBackground beauty(frame_, colours[c]);
+            float* const to = &planes[static_cast<std::size_t>(c) * plane()];
+            for (std::size_t i = 0; i < frame_.pixels(); ++i) {
+                const float divisor = albedo(c, i) * std::max(opacity(i), opacity_floor), share = shares[c] / divisor;
+                to[at(i)] = finite(beauty(i) / divisor);
+                if (has_variance) luminance_variance[at(i)] += share * share * finite(variance[c][i]);
             }
-            planes[3 * plane() + at(i)] = variance;
         }
         colour = device_.upload(planes, "colour");
     }

@@ -74,11 +74,9 @@ void ChannelPlan::check(const Frame& frame) const {
     }
 }
 
-float beauty_without_background(const Frame& frame, const char* colour, std::size_t i) {
-    const float beauty = frame.at(colour)[i];
-    const auto background = frame.channels.find(std::string("background.") + colour);
-    if (background == frame.channels.end() || !frame.has("A")) return beauty;
-    return beauty - (1 - frame.at("A")[i]) * background->second[i];
+BeautyWithoutBackground::BeautyWithoutBackground(const Frame& frame, const std::string& colour) : beauty_(frame.at(colour).data()) {
+    const std::string background = "background." + colour;
+    if (frame.has(background) && frame.has("A")) background_ = frame.at(background).data(), alpha_ = frame.at("A").data();
 }
 
 std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const Region& region, std::vector<float>& planes) const {
@@ -88,16 +86,20 @@ std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const R
         const bool of_target = name.rfind("target.", 0) == 0;
         const Frame& from = of_target ? *target : frame;
         const std::string colour = of_target ? name.substr(7) : name;
-        const float noise = name == noise_channel ? noise_level(frame) : 0;
-        for (int y = region.y; y < region.y + region.height; ++y)
-            for (int x = region.x; x < region.x + region.width; ++x) {
-                const std::size_t i = static_cast<std::size_t>(y) * frame.width + x;
-                float v = name == noise_channel ? noise
-                          : is_radiance(colour) ? beauty_without_background(from, colour.c_str(), i)
-                                                : from.at(colour)[i];
-                if (!std::isfinite(v)) v = 0, ++repaired;
-                planes.push_back(v);
-            }
+        const auto add = [&](const auto& value_of) {
+            for (int y = region.y; y < region.y + region.height; ++y)
+                for (int x = region.x; x < region.x + region.width; ++x) {
+                    float v = value_of(static_cast<std::size_t>(y) * frame.width + x);
+                    if (!std::isfinite(v)) v = 0, ++repaired;
+                    planes.push_back(v);
+                }
+        };
+        if (name == noise_channel)
+            add([noise = noise_level(frame)](std::size_t) { return noise; });
+        else if (is_radiance(colour))
+            add(BeautyWithoutBackground(from, colour));
+        else
+            add([values = from.at(colour).data()](std::size_t i) { return values[i]; });
     }
     return repaired;
 }
@@ -106,6 +108,7 @@ double exposure_of(const Frame& frame) {
     constexpr int block = 16;
     const char* const name = frame.has("opacity.A") ? "opacity.A" : "A";
     const std::vector<float>* const opacities = frame.has(name) ? &frame.at(name) : nullptr;
+    const BeautyWithoutBackground red(frame, "R"), green(frame, "G"), blue(frame, "B");
     double sum = 0;
     int blocks = 0;
     for (int y0 = 0; y0 < frame.height; y0 += block)
@@ -115,8 +118,7 @@ double exposure_of(const Frame& frame) {
             for (int y = y0; y < std::min(y0 + block, frame.height); ++y)
                 for (int x = x0; x < std::min(x0 + block, frame.width); ++x, ++n) {
                     const std::size_t i = static_cast<std::size_t>(y) * frame.width + x;
-                    const double l = 0.2126 * beauty_without_background(frame, "R", i) + 0.7152 * beauty_without_background(frame, "G", i) +
-                                     0.0722 * beauty_without_background(frame, "B", i);
+                    const double l = 0.2126 * red(i) + 0.7152 * green(i) + 0.0722 * blue(i);
                     if (std::isfinite(l)) luminance += std::max(l, 0.0);
                     const double a = opacities ? (*opacities)[i] : 1;
                     if (std::isfinite(a)) opacity += a;

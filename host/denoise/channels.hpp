@@ -48,7 +48,15 @@ private:
 /// luminance is above 0; 1 where there is none. Reads the whole frame: R G B less background, opacity.A (else A).
 double exposure_of(const Frame& frame);
 
-/// The frame's beauty at pixel i less the background seen through it.
-float beauty_without_background(const Frame& frame, const char* colour, std::size_t i);
+/// A colour of a frame less the background seen through it, pixel by pixel. The frame outlives it.
+class BeautyWithoutBackground {
+public:
+    /// `colour`: R, G or B.
+    BeautyWithoutBackground(const Frame& frame, const std::string& colour);
+    float operator()(std::size_t pixel) const { return beauty_[pixel] - (background_ ? (1 - alpha_[pixel]) * background_[pixel] : 0); }
+
+private:
+    const float *beauty_, *background_ = nullptr, *alpha_ = nullptr; // no background: nothing is taken away
+};
 
 } // namespace clvr

@@ -115,15 +115,15 @@ namespace {
 
 /// Takes the result back towards the noisy input where that has converged (kernels/denoise/blend_by_variance.cl), in bands of rows.
 void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
-    constexpr int radius = 10, band = 256; // the radius of the kernels
+    constexpr int band = 256;
     Kernel sum = device.kernel("denoise/blend_sums"), blend = device.kernel("denoise/blend_by_variance");
     const auto width = static_cast<std::size_t>(noisy.width);
     for (const char* c : colours) {
         std::vector<float>& to = done.channel(c);
         const std::vector<float> from = to;
         for (int y = 0; y < noisy.height; y += band) {
-            const int low = std::max(0, y - radius), count = std::min(band, noisy.height - y),
-                      rows = std::min(noisy.height, y + count + radius) - low;
+            const int low = std::max(0, y - CLVR_BLEND_RADIUS), count = std::min(band, noisy.height - y),
+                      rows = std::min(noisy.height, y + count + CLVR_BLEND_RADIUS) - low;
             const auto upload = [&](const auto& value_of) {
                 std::vector<float> values(rows * width);
                 for (std::size_t i = 0; i < values.size(); ++i) {
@@ -133,8 +133,7 @@ void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
                 return device.upload(values, "rows to blend");
             };
             const std::vector<float>& variances = noisy.at(std::string("variance.") + c);
-            const Buffer before = upload([&](std::size_t i) { return beauty_without_background(noisy, c, i); }),
-                         variance = upload([&](std::size_t i) { return variances[i]; }),
+            const Buffer before = upload(BeautyWithoutBackground(noisy, c)), variance = upload([&](std::size_t i) { return variances[i]; }),
                          after = upload([&](std::size_t i) { return from[i]; }),
                          sums = device.buffer(rows * width * 16, "sums of rows to blend"),
                          result = device.buffer(count * width * 4, "blended rows");

@@ -207,11 +207,11 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
 
 void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {
     const shared::GridLevel& l = params_.level[level];
-    const int runs = (l.depth + bins_[level] - 1) / bins_[level];
-    const Range group = is_cpu(device_) ? Range{1} : Range{8, 4};
+    const auto runs = static_cast<std::size_t>((l.depth + bins_[level] - 1) / bins_[level]);
+    const Range group = is_cpu(device_) ? Range{1} : Range{32, 4};
     const double count = static_cast<double>(params_.width) * params_.height * images;
     device_.launch(sums ? sum_[level] : splat_[level],
-                   {static_cast<std::size_t>(l.columns), static_cast<std::size_t>(l.rows), static_cast<std::size_t>(images) * runs}, group,
+                   {static_cast<std::size_t>(l.columns) * runs, static_cast<std::size_t>(l.rows), static_cast<std::size_t>(images)}, group,
                    {count * 20 + 16.0 * l.rows * l.columns * l.depth * images, 0}, params_buffer_, level, 2 * levels_ - 1, outputs_, pixels,
                    first_image, cells);
 }

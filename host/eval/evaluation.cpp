@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <future>
 #include <memory>
 
 namespace clvr {
@@ -72,8 +73,13 @@ Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string&
     for (const auto& view : pairs.views) {
         const Frame noisy = read_exr(noisy_of(view)), reference = read_exr(view.reference);
         e.views.push_back(noisy_of(view));
-        for (std::size_t k = 0; k < candidates.size(); ++k)
-            e.scores[k].views.push_back(naming(noisy_of(view), [&] { return compare_frames(candidates[k].denoise(noisy), reference); }));
+        naming(noisy_of(view), [&] {
+            std::vector<std::future<Metrics>> metrics; // while the device makes the next picture
+            for (const Candidate& c : candidates)
+                metrics.push_back(
+                    std::async(std::launch::async, [&, picture = c.denoise(noisy)] { return compare_frames(picture, reference); }));
+            for (std::size_t k = 0; k < candidates.size(); ++k) e.scores[k].views.push_back(metrics[k].get());
+        });
         if (seen) seen(static_cast<double>(e.views.size()) / static_cast<double>(pairs.views.size()));
     }
     for (Score& s : e.scores) s.mean = mean_of(s.views);
@@ -101,9 +107,14 @@ Baselines best_baselines(const Device& device, const std::string& folder, int fr
     for (const auto& view : pairs.views) {
         const Frame noisy = read_exr(noisy_of(view)), reference = read_exr(view.reference);
         naming(noisy_of(view), [&] {
+            std::vector<std::pair<std::future<double>, std::future<double>>> scores; // while the device makes the next picture
+            const auto score = [&](const auto& settings) {
+                return std::async(std::launch::async, [&, picture = denoise(device, noisy, settings)] { return psnr(picture, reference); });
+            };
+            for (const Baselines& b : grid) scores.emplace_back(score(b.cross_bilateral), score(b.wavelet));
             for (std::size_t k = 0; k < grid.size(); ++k) {
-                bilateral[k] += psnr(denoise(device, noisy, grid[k].cross_bilateral), reference);
-                wavelet[k] += psnr(denoise(device, noisy, grid[k].wavelet), reference);
+                bilateral[k] += scores[k].first.get();
+                wavelet[k] += scores[k].second.get();
             }
         });
         if (seen) seen((done += 1) / static_cast<double>(pairs.views.size()));

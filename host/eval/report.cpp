@@ -54,10 +54,11 @@ Frame cut(const Frame& frame, int x, int y, int width, int height) {
 /// Where a window of the reference has most detail: the sum of |second differences| of its displayed luminance.
 std::pair<int, int> most_detailed(const Frame& reference) {
     const int w = std::min(crop_size, reference.width), h = std::min(crop_size, reference.height);
+    const float* const rgb[3] = {reference.at("R").data(), reference.at("G").data(), reference.at("B").data()};
     const auto grey = [&](int x, int y) {
         const std::size_t i = static_cast<std::size_t>(y) * reference.width + x;
         double sum = 0;
-        for (const char* c : colours) sum += std::pow(std::clamp(static_cast<double>(reference.at(c)[i]), 0.0, 1.0), 1 / 2.2);
+        for (const float* c : rgb) sum += std::pow(std::clamp(static_cast<double>(c[i]), 0.0, 1.0), 1 / 2.2);
         return sum;
     };
     const int step = std::max(1, crop_size / 6);

@@ -46,8 +46,9 @@ Frame difference_picture(const Frame& image, const Frame& reference) {
     Frame picture = as_large(image);
     for (const char* c : colours) {
         std::vector<float>& plane = picture.channel(c);
+        const std::vector<float>&a = image.at(c), &b = reference.at(c);
         for (std::size_t i = 0; i < plane.size(); ++i)
-            plane[i] = static_cast<float>(std::pow(std::abs(display(image.at(c)[i]) - display(reference.at(c)[i])), 2.2));
+            plane[i] = static_cast<float>(std::pow(std::abs(display(a[i]) - display(b[i])), 2.2));
     }
     return picture;
 }

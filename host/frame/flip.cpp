@@ -36,18 +36,20 @@ Taps normalised(Taps t, bool by_sign) {
 
 /// Convolves rows with `x` and columns with `y`; pixels beyond the border repeat it.
 Plane filtered(const Plane& p, int width, int height, const Taps& x, const Taps& y) {
-    const auto index = [&](int column, int row) { return static_cast<std::size_t>(row) * width + column; };
-    const auto reflected = [](const Taps& t, int k, int at, int size) {
-        const int radius = static_cast<int>(t.size() / 2);
-        return std::clamp(at + k - radius, 0, size - 1);
-    };
-    Plane rows(p.size()), out(p.size());
+    const auto w = static_cast<std::size_t>(width);
+    const int x_radius = static_cast<int>(x.size() / 2), y_radius = static_cast<int>(y.size() / 2);
+    Plane rows(p.size()), out(p.size()), line(w + 2 * x_radius); // a row with its border
+    for (int r = 0; r < height; ++r) {
+        const double* const from = &p[r * w];
+        for (int c = -x_radius; c < width + x_radius; ++c) line[c + x_radius] = from[std::clamp(c, 0, width - 1)];
+        for (std::size_t k = 0; k < x.size(); ++k)
+            for (std::size_t c = 0; c < w; ++c) rows[r * w + c] += x[k] * line[c + k];
+    }
     for (int r = 0; r < height; ++r)
-        for (int c = 0; c < width; ++c)
-            for (int k = 0; k < static_cast<int>(x.size()); ++k) rows[index(c, r)] += x[k] * p[index(reflected(x, k, c, width), r)];
-    for (int r = 0; r < height; ++r)
-        for (int c = 0; c < width; ++c)
-            for (int k = 0; k < static_cast<int>(y.size()); ++k) out[index(c, r)] += y[k] * rows[index(c, reflected(y, k, r, height))];
+        for (std::size_t k = 0; k < y.size(); ++k) {
+            const double* const from = &rows[std::clamp(r + static_cast<int>(k) - y_radius, 0, height - 1) * w];
+            for (std::size_t c = 0; c < w; ++c) out[r * w + c] += y[k] * from[c];
+        }
     return out;
 }
 

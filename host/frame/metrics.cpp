@@ -100,11 +100,13 @@ std::pair<double, double> ssim_of(const Frame& image, const Frame& reference) {
 double psnr(const Frame& image, const Frame& reference) {
     check(image, reference);
     double sum = 0;
-    for (const char* c : colours)
-        for (std::size_t i = 0; i < image.pixels(); ++i) {
-            const double d = display(image.at(c)[i]) - display(reference.at(c)[i]);
+    for (const char* c : colours) {
+        const std::vector<float>&a = image.at(c), &b = reference.at(c);
+        for (std::size_t i = 0; i < a.size(); ++i) {
+            const double d = display(a[i]) - display(b[i]);
             sum += d * d;
         }
+    }
     const double mse = sum / (3.0 * static_cast<double>(image.pixels()));
     return mse > 0 ? -10 * std::log10(mse) : std::numeric_limits<double>::infinity();
 }
@@ -114,13 +116,15 @@ Metrics compare_frames(const Frame& image, const Frame& reference) {
     m.psnr = psnr(image, reference);
     std::tie(m.ssim, m.ssim_opaque) = ssim_of(image, reference);
     const double n = 3.0 * static_cast<double>(image.pixels());
-    for (const char* c : colours)
-        for (std::size_t i = 0; i < image.pixels(); ++i) {
-            const double a = image.at(c)[i], b = reference.at(c)[i], d = a - b;
+    for (const char* c : colours) {
+        const std::vector<float>&of_image = image.at(c), &of_reference = reference.at(c);
+        for (std::size_t i = 0; i < of_image.size(); ++i) {
+            const double a = of_image[i], b = of_reference[i], d = a - b;
             m.rmse += d * d / n;
             m.smape += std::abs(d) / (std::abs(a) + std::abs(b) + 0.01) / n;
             m.relmse += d * d / (b * b + 0.01) / n;
         }
+    }
     m.rmse = std::sqrt(m.rmse);
     const std::vector<double> flip = flip_map(image, reference);
     m.flip = std::accumulate(flip.begin(), flip.end(), 0.0) / static_cast<double>(flip.size());

@@ -10,8 +10,10 @@
 #include <ImfPartType.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <algorithm>
 #include <fmt/format.h>
+#include <thread>
 
 namespace clvr {
 
@@ -50,7 +52,16 @@ void probe_last_line(Imf::InputFile& file, const Imath::Box2i& window) {
     file.readPixels(window.max.y);
 }
 
+/// OpenEXR packs and unpacks lines on all cores; by itself it takes one.
+void use_all_cores() {
+    [[maybe_unused]] static const bool once = [] {
+        Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
+        return true;
+    }();
+}
+
 Frame read_all(const std::string& path) {
+    use_all_cores();
     Imf::InputFile file(path.c_str());
     const Imf::Header& header = file.header();
     check_header(header);
@@ -71,6 +82,7 @@ Frame read_all(const std::string& path) {
 }
 
 std::string encode(const Frame& frame) {
+    use_all_cores();
     Imf::Header header(frame.width, frame.height);
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer buffer;

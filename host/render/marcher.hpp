@@ -20,8 +20,8 @@ public:
     /// Marches pixels first_pixel .. first_pixel + pixels - 1 (numbered in 4x4 blocks) into planes[p * stride + offset + i].
     void run(std::uint32_t first_pixel, std::uint32_t pixels, std::vector<float>& planes, std::size_t stride, std::size_t offset);
 
-    /// Pixels of one launch: keeps it below about 100 ms.
-    static constexpr std::uint32_t pixels_per_launch = 1 << 14;
+    /// Pixels of one launch: few enough to keep it below about 100 ms.
+    static std::uint32_t pixels_per_launch(const Device& device);
 
 private:
     Device device_;
@@ -29,6 +29,7 @@ private:
     const LightTables& light_;
     March march_;
     int width_;
+    std::uint32_t at_once_;
     Kernel kernel_;
     Buffer planes_;
 };

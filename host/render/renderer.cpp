@@ -237,7 +237,12 @@ void Renderer::trace(Frame& frame, const RenderControl& control) {
 }
 
 std::vector<Dealer::Portion> Renderer::march_portions() const {
-    return {workers_.size(), {Marcher::pixels_per_launch / 16, Marcher::pixels_per_launch}};
+    std::vector<Dealer::Portion> portions(workers_.size());
+    for (const std::size_t k : dealer_.left()) {
+        const std::uint32_t most = Marcher::pixels_per_launch(workers_[k]->device);
+        portions[k] = {most / 16, most};
+    }
+    return portions;
 }
 
 void Renderer::march(Frame& frame, bool features, const RenderControl& control) {

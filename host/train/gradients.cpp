@@ -9,8 +9,8 @@ namespace {
 constexpr std::size_t lanes = 16; // partial sums of every reduction, at every width
 
 /// Output channels that a work-item of weight_gradient takes.
-int block_of(int channels) {
-    int block = std::min(channels, 5);
+int block_of(const Device& device, int channels) {
+    int block = std::min(channels, device.tunable("gradient_block", 5));
     while (channels % block != 0) --block;
     return block;
 }
@@ -40,8 +40,8 @@ std::size_t Gradients::largest_bytes(const Device& device, const Model& model, c
 Gradients::Gradients(const Device& device, const Model& model, Loss loss, const NeuralGrid& forward, const BatchShape& shape)
     : device_(device), channels_(static_cast<int>(model.channels.size())), hidden_(model.hidden), outputs_(model.outputs()),
       levels_(static_cast<int>(model.levels.size())), kernel_(model.kernel), parameters_(model.parameters()),
-      conv1_(model.conv1_weight.size()), bias1_(model.conv1_bias.size()), conv2_(model.conv2_weight.size()), block1_(block_of(hidden_)),
-      block2_(block_of(outputs_)) {
+      conv1_(model.conv1_weight.size()), bias1_(model.conv1_bias.size()), conv2_(model.conv2_weight.size()),
+      block1_(block_of(device, hidden_)), block2_(block_of(device, outputs_)) {
     const bool cpu = device.facts().type == DeviceType::cpu;
     width_ = device_.tunable("conv_width", cpu ? 16 : 1);
     const std::string width = std::to_string(width_), size = std::to_string(kernel_);
@@ -121,9 +121,10 @@ void Gradients::weight_gradients(NeuralGrid& forward, int images, const Buffer& 
     const double pixels = static_cast<double>(p.width) * p.height * images;
     const std::size_t lane_items = lanes / static_cast<std::size_t>(width_);
     const auto count = static_cast<cl_uint>(parameters_);
+    const Range job_group{lane_items, width_ == 1 ? 4u : 1u}; // 16 work-items are half of what GPUs run at once
     const auto weights = [&](Kernel& kernel, int in, int out, int block, const Buffer& from, const Buffer& gradient, std::size_t at) {
         const std::size_t jobs = static_cast<std::size_t>(out / block * in * kernel_);
-        device_.launch(kernel, {lane_items, jobs, n}, {lane_items}, {4 * pixels * (in + out), 2 * pixels * in * out * kernel_ * kernel_},
+        device_.launch(kernel, {lane_items, jobs, n}, job_group, {4 * pixels * (in + out), 2 * pixels * in * out * kernel_ * kernel_},
                        forward.params(), from, gradient, lanes_, count, static_cast<cl_uint>(at));
     };
     const auto biases = [&](int channels, const Buffer& gradient, std::size_t at) {

@@ -33,8 +33,9 @@ int micro_batch_of(const Device& device, const Model& model, const StepConfig& c
             std::max(Gradients::largest_bytes(device, model, shape), by_matrices(c) ? MatrixLayers::largest_bytes(model, shape) : 0);
         return bytes <= device.free_bytes() / 2 && largest <= device.max_alloc_bytes();
     };
-    // 65536 pixels at once keep a CPU's caches (8 % faster than 8 times as many) and are enough to share between its cores.
-    const int pixels = device.tunable("micro_pixels", device.facts().type == DeviceType::cpu ? 1 << 16 : 1 << 19);
+    // 65536 pixels at once keep a CPU's caches (8 % faster than 8 times as many) and are enough to share between its cores; a large GPU is
+    // only filled by millions (about 500 bytes each).
+    const int pixels = device.tunable("micro_pixels", device.facts().type == DeviceType::cpu ? 1 << 16 : 1 << 22);
     int micro = std::min(c.batch, c.micro_batch > 0 ? c.micro_batch : std::max(1, pixels / (c.patch * c.patch)));
     while (micro > 1 && !fits(micro)) micro = (micro + 1) / 2;
     return micro;

@@ -3,7 +3,7 @@
 // shrinkage with the least mean squared error (the positive-part James-Stein form). The variance of few samples is itself noise: over 7x7 pixels, with 1.5
 // times the variance in place of the standard error, bonsai at 2 samples per pixel lost 0.6 dB; now 2 lose nothing and 64 gain 1 dB over the network alone.
 // n/(n-1) times the variance in its place does as well at few samples and 0.1 to 0.5 dB better at 64, but gives ten times as many pixels noise back at 4.
-#define RADIUS 10
+#include "shared/denoise_params.h"
 
 // `sums`: [rows][width] of blend_sums; `noisy`, `out`: [rows][width]. The rows of the result begin at `first`; where the rows end, windows are smaller.
 __kernel void blend_by_variance(__global const float* noisy, __global const float* out, __global const float4* sums, int width, int rows, int first, int count,
@@ -12,7 +12,7 @@ __kernel void blend_by_variance(__global const float* noisy, __global const floa
     if (x >= width || y >= count) return;
     float4 sum = (float4)(0.0f);
     int row = first + y;
-    for (int j = row < RADIUS ? 0 : row - RADIUS; j <= row + RADIUS && j < rows; ++j) sum += sums[j * width + x];
+    for (int j = row < CLVR_BLEND_RADIUS ? 0 : row - CLVR_BLEND_RADIUS; j <= row + CLVR_BLEND_RADIUS && j < rows; ++j) sum += sums[j * width + x];
     int at = row * width + x;
     float bias = fma(-2.0f, sqrt(sum.y), sum.x);
     bias = bias > 0.0f ? bias : 0.0f;

@@ -1,6 +1,7 @@
 // Splats pixels into a bilateral grid with tent weights, the tent filter with it (SPEC.md sections 5 and 12). A work-item gathers CLVR_BINS cells of one
 // grid column from the four blocks of pixels around it, in the order 00 01 10 11, each by rows: the same sums for every shape, no atomics. Cells
-// and weights are found for CLVR_WIDTH pixels at once. On PoCL a whole column a work-item is fastest, on GPUs a cell. Global: x = columns, y = rows, z = images * ceil(depth / CLVR_BINS).
+// and weights are found for CLVR_WIDTH pixels at once. On PoCL a whole column a work-item is fastest, on GPUs a cell: neighbouring work-items then read the
+// same pixels and write neighbouring cells. Global: x = columns * ceil(depth / CLVR_BINS), y = rows, z = images.
 #include "lib/grid.clh"
 
 #ifndef CLVR_BINS
@@ -18,8 +19,8 @@
 __kernel void splat(__constant DenoiseParams* p, int level_number, int planes, __global const float* guides, __global const float4* splatted,
                     int first_image, __global float4* cells) {
     __constant const GridLevel* level = p->level + level_number;
-    int column = (int)get_global_id(0), row = (int)get_global_id(1), runs = (level->depth + CLVR_BINS - 1) / CLVR_BINS;
-    int n = (int)get_global_id(2) / runs, first = (int)get_global_id(2) % runs * CLVR_BINS;
+    int row = (int)get_global_id(1), n = (int)get_global_id(2), runs = (level->depth + CLVR_BINS - 1) / CLVR_BINS;
+    int column = (int)get_global_id(0) / runs, first = (int)get_global_id(0) % runs * CLVR_BINS;
     if (column >= level->columns || row >= level->rows) return;
     guides += plane_start(p, n, planes, level_number);
     splatted += (size_t)(first_image + n) * (size_t)(p->width * p->height);
@@ -46,8 +47,12 @@ __kernel void splat(__constant DenoiseParams* p, int level_number, int planes, _
                 for (int i = 0; i < CLVR_WIDTH && x + i < x1; ++i) {
                     if (!CLVR_WHOLE && (to[i] < -1 || to[i] >= CLVR_BINS)) continue;
                     float4 colour = splatted[y * p->width + x + i];
+#if CLVR_BINS == 1 // the sum stays in registers
+                    sum[0] = fma((float4)(to[i] == 0 ? lower[i] : upper[i]), colour, sum[0]);
+#else
                     sum[to[i]] = fma((float4)(lower[i]), colour, sum[to[i]]);
                     sum[to[i] + 1] = fma((float4)(upper[i]), colour, sum[to[i] + 1]);
+#endif
                 }
             }
         }

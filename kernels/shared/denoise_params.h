@@ -5,6 +5,7 @@
 CLVR_SHARED_BEGIN
 
 #define CLVR_LEVELS_MAX 8
+#define CLVR_BLEND_RADIUS 10 ///< of the window that blending back to the noisy input sums over [pixels]
 
 /// A bilateral grid: `rows` x `columns` x `depth` cells, depth fastest, from cell `offset` of its image's cells on.
 typedef struct GridLevel {

@@ -32,7 +32,11 @@ __kernel void weight_gradient(__constant DenoiseParams* p, __global const float*
 #pragma unroll
         for (int k = 0; k < CLVR_KERNEL; ++k) sum[c][k] = (vfloat)(0.0f);
     for (int y = 0; y < p->height; ++y, in += p->row, gradient += p->row) {
+#if CLVR_WIDTH == 1
+#pragma unroll 4 // loads of several steps wait together
+#else
 #pragma nounroll
+#endif
         for (int x = 0; x < p->width - lane; x += 16) {
             vfloat v[CLVR_KERNEL];
 #pragma unroll

@@ -162,7 +162,7 @@ TEST_P(Stage, MeetsTheGoldenVectors) {
         const Buffer grid_cells = device.buffer(cells * 16 + 16, "cells"), gradient_cells = device.buffer(cells * 16 + 16, "cells"),
                      no_cells = device.upload(std::vector<float>(cells * 4 + 4), "cells");
         const Range columns{static_cast<std::size_t>(p.level[0].columns), static_cast<std::size_t>(p.level[0].rows)},
-            third{columns.x, columns.y, static_cast<std::size_t>((p.level[0].depth + 2) / 3)}, all = grid.pixel_items(1);
+            third{columns.x * static_cast<std::size_t>((p.level[0].depth + 2) / 3), columns.y}, all = grid.pixel_items(1);
 
         device.launch(splat, columns, {1}, {}, params, 0, 1, guide, image, 0, grid_cells);
         golden.expect_near("grid", xyz(grid_cells, cells));
