@@ -6,8 +6,10 @@
 #include "host/io/atomic_file.hpp"
 #include "host/io/model_file.hpp"
 #include "host/train/trainer.hpp"
+#include "kernels/shared/denoise_params.h"
 #include "runtime/error.hpp"
 
+#include <cstdio>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -16,7 +18,7 @@ namespace clvr {
 namespace {
 
 struct Options {
-    std::vector<std::string> folders, channels;
+    std::vector<std::string> folders, channels, levels;
     std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant", convolution = "direct";
     TrainerConfig trainer;
     int hidden = 20, kernel = 5;
@@ -34,11 +36,28 @@ Loss loss_of(const Options& o) {
     throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected shifted-gamma, reference, smape or relative-l2", o.loss), "--loss");
 }
 
+/// "PIXELS:CODES".
+Model::Level level_of(const std::string& text) {
+    Model::Level level;
+    int end = 0;
+    if (std::sscanf(text.c_str(), "%d:%d%n", &level.pixels, &level.codes, &end) == 2 && static_cast<std::size_t>(end) == text.size() &&
+        level.pixels >= 1 && level.pixels <= 64 && level.codes >= 4 && level.codes <= 256)
+        return level;
+    throw Error(ErrorKind::usage, fmt::format("has \"{}\"; expected PIXELS:CODES with 1 to 64 pixels and 4 to 256 codes, as 4:4", text),
+                "--levels");
+}
+
 Model start_of(const Options& o) {
     if (!o.init.empty()) return read_model(o.init);
     Model m = o.plain ? Model() : default_settings();
     if (!o.channels.empty()) m.channels = o.channels;
     if (m.channels.empty()) m.channels = reference_channels();
+    if (!o.levels.empty()) {
+        if (o.levels.size() > CLVR_LEVELS_MAX)
+            throw Error(ErrorKind::usage, fmt::format("has {} levels; expected 1 to {}", o.levels.size(), CLVR_LEVELS_MAX), "--levels");
+        m.levels.clear();
+        for (const auto& text : o.levels) m.levels.push_back(level_of(text));
+    }
     m.hidden = o.hidden;
     m.kernel = o.kernel;
     if (o.no_demodulation) m.demodulation = false;
@@ -134,6 +153,11 @@ void add_train_command(CLI::App& app) {
         ->group("Model");
     c->add_option("--hidden", o->hidden, "Hidden channels [20]")->group("Model");
     c->add_option("--kernel", o->kernel, "Size of the convolutions [5]")->group("Model");
+    c->add_option("--levels", o->levels,
+                  "Bilateral grids, the finest first: pixels of a cell each way and codes (of the guide's 256) of a cell [4:4,8:8,16:16]")
+        ->delimiter(',')
+        ->type_name("PIXELS:CODES,...")
+        ->group("Model");
     c->add_flag("--plain", o->plain, "Without exposure, albedo floor and opacity weights: the reference's preprocessing")->group("Model");
     c->add_flag("--no-demodulation", o->no_demodulation, "Without dividing the radiance by the albedo")->group("Model");
     add_device_options(*c, o->device, "train");

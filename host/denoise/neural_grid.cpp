@@ -1,7 +1,6 @@
 #include "host/denoise/neural_grid.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <fmt/format.h>
 
 namespace clvr {
@@ -124,7 +123,7 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
     assemble_ = device_.kernel("denoise/assemble", {{"CLVR_WIDTH", width}});
     slice_ = device_.kernel("denoise/slice", {{"CLVR_WIDTH", width}, {"CLVR_SHOW", shape.show ? "1" : "0"}});
     for (int l = 0; l < levels_; ++l) {
-        bins_.push_back(is_cpu(device_) ? params_.level[l].depth : 1);
+        bins_.push_back(is_cpu(device_) ? params_.level[l].depth : 8);
         bins_.back() = std::min(device_.tunable("splat_bins", bins_.back()), params_.level[l].depth);
         for (auto [kernels, sums] : {std::pair(&splat_, "0"), {&sum_, "1"}})
             kernels->push_back(device_.kernel("denoise/splat", {{"CLVR_WIDTH", width},
@@ -139,7 +138,6 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
 
     params_buffer_ = device_.upload(std::vector<shared::DenoiseParams>{params_}, "denoiser settings");
     channel_list_ = device_.upload(ChannelPlan(model, shape.target).channels(), "channel list");
-    source_params_ = device_.buffer(sizeof source_, "channel settings");
     const int results = 3 + (shape.show ? 3 * levels_ : 0);
     struct {
         Buffer& buffer;
@@ -180,10 +178,6 @@ void NeuralGrid::set_parameters(const Buffer& parameters) {
 
 void NeuralGrid::assemble(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
                           int orientation, int n) {
-    if (std::memcmp(&source_, &params, sizeof params) != 0) {
-        source_ = params;
-        device_.write(source_params_, &source_, sizeof source_);
-    }
     // The part's pixel (column, row) is the result of quarter turns of (x, y) within width x height, rows upside down first for 4..7
     // (SPEC.md section 9): an affine map, found from three of its pixels.
     const auto source_pixel = [&](int column, int row) {
@@ -201,8 +195,8 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
     const auto size = static_cast<cl_uint>(source_width) * static_cast<cl_uint>(source_height);
     // Turned images are read down their columns: 16 rows at once find what they share in the first-level cache (10 % on PoCL).
     device_.launch(assemble_, pixel_items(1), is_cpu(device_) ? Range{1, 16} : pixel_group(),
-                   {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, source_params_, source,
-                   size, from, channel_list_, input_, splatted_, remodulation_, target_);
+                   {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, params, source, size,
+                   from, channel_list_, input_, splatted_, remodulation_, target_);
 }
 
 void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {

@@ -101,8 +101,7 @@ private:
     std::vector<Kernel> splat_, sum_;
     std::vector<int> bins_;
     Convolution to_hidden_, to_outputs_;
-    Buffer params_buffer_, channel_list_, source_params_, input_, hidden_, outputs_, splatted_, remodulation_, cells_, result_, target_;
-    shared::SourceParams source_{};
+    Buffer params_buffer_, channel_list_, input_, hidden_, outputs_, splatted_, remodulation_, cells_, result_, target_;
 };
 
 } // namespace clvr

@@ -15,7 +15,7 @@ constexpr std::uint32_t compact_run = 64;
 std::uint32_t wave_paths(const Device& device, std::uint32_t pixels) {
     constexpr std::size_t bytes_per_path = 8 + 6 * 16 + 4 * 4 + 2 * 16, least = 4096;
     const bool cpu = device.facts().type == DeviceType::cpu;
-    std::size_t n = static_cast<std::size_t>(std::max(16, device.tunable("wave_paths", cpu ? 1 << 16 : 1 << 20)));
+    std::size_t n = static_cast<std::size_t>(std::max(16, device.tunable("wave_paths", cpu ? 1 << 16 : 1 << 22)));
     n = std::min(n, std::size_t{pixels} * samples_per_wave);
     while (n > least && (n * bytes_per_path > device.free_bytes() / 2 || n * 16 > device.max_alloc_bytes())) n /= 2;
     return static_cast<std::uint32_t>(n);
@@ -24,7 +24,7 @@ std::uint32_t wave_paths(const Device& device, std::uint32_t pixels) {
 } // namespace
 
 PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light, std::uint32_t pixels)
-    : device_(device), volume_(volume), light_(light), width_(packet_width(device)) {
+    : device_(device), volume_(volume), light_(&light), width_(packet_width(device)) {
     capacity_ = wave_paths(device, pixels);
     run_ = std::max(1, device.tunable("packet_run", width_ == 1 ? 1 : 16));
     per_packet_ = static_cast<std::size_t>(device.tunable("packet_group", width_ == 1 ? 64 : 1));
@@ -100,17 +100,17 @@ void PathTracer::trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std
 
 void PathTracer::start_paths(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples) {
     const std::uint32_t n = pixels * samples;
-    device_.launch(camera_rays_, {n}, camera_rays_.group(per_path_), {n * 92.0, 0}, light_.render(), paths(), active_, n, first_pixel,
+    device_.launch(camera_rays_, {n}, camera_rays_.group(per_path_), {n * 92.0, 0}, light_->render(), paths(), active_, n, first_pixel,
                    first_sample, samples);
 }
 
 void PathTracer::fly(std::uint32_t active, std::uint32_t bounce) {
-    device_.launch(free_flight_, packets(active), free_flight_.group(per_packet_), {}, volume_.arguments(), light_.render(), paths(),
+    device_.launch(free_flight_, packets(active), free_flight_.group(per_packet_), {}, volume_.arguments(), light_->render(), paths(),
                    active_, active, bounce);
 }
 
 void PathTracer::shade(std::uint32_t active, std::uint32_t bounce) {
-    device_.launch(shade_, {active}, shade_.group(per_path_), {}, volume_.arguments(), light_.arguments(), lobe_, paths(), active_, state_,
+    device_.launch(shade_, {active}, shade_.group(per_path_), {}, volume_.arguments(), light_->arguments(), lobe_, paths(), active_, state_,
                    active, bounce);
 }
 
@@ -126,7 +126,7 @@ PathTracer::Survivors PathTracer::list_survivors(std::uint32_t active) {
 
 void PathTracer::gather_light(std::uint32_t lit, std::uint32_t bounce) {
     if (lit == 0) return;
-    device_.launch(transmittance_, packets(lit), transmittance_.group(per_packet_), {}, volume_.arguments(), light_.render(), paths(),
+    device_.launch(transmittance_, packets(lit), transmittance_.group(per_packet_), {}, volume_.arguments(), light_->render(), paths(),
                    shadowed_, lit, bounce);
 }
 

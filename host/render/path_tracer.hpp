@@ -17,8 +17,11 @@ struct PixelSums {
 class PathTracer {
 public:
     /// For a picture of so many pixel numbers. `volume` and `light` outlive the tracer. Waves hold tunable "wave_paths" paths (default
-    /// 65536 on CPUs, 1048576 elsewhere).
+    /// 65536 on CPUs, 4194304 elsewhere).
     PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light, std::uint32_t pixels);
+
+    /// Another view of as many pixels: its camera and lights, which outlive the tracer.
+    void aim(const LightTables& light) { light_ = &light; }
 
     /// Adds samples first_sample .. first_sample + samples - 1 to pixels first_pixel .. first_pixel + pixels - 1, in sample order, into
     /// sums[offset ...]. Returns false, with those sums undefined, when `cancelled` became true.
@@ -46,7 +49,7 @@ private:
 
     Device device_;
     const DeviceVolume& volume_;
-    const LightTables& light_;
+    const LightTables* light_;
     std::uint32_t capacity_;
     int width_, run_;                   // lanes of a packet; packets' worth of paths that a work-item flies
     std::size_t per_packet_, per_path_; // local sizes wanted

@@ -114,8 +114,8 @@ void Renderer::aim(const Camera& camera, int view) {
     const shared::RenderParams params = render_params(scene_, volume_.voxels, resolve_view(scene_, outline_, steady_), environment_);
     dealer_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
-        w.tracer.reset();
         w.light.emplace(w.device, params, environment_);
+        if (w.tracer) w.tracer->aim(*w.light);
     });
 }
 

@@ -10,7 +10,7 @@ constexpr std::size_t lanes = 16; // partial sums of every reduction, at every w
 
 /// Output channels that a work-item of weight_gradient takes.
 int block_of(const Device& device, int channels) {
-    int block = std::min(channels, device.tunable("gradient_block", 5));
+    int block = std::min(channels, device.tunable("gradient_block", device.facts().type == DeviceType::cpu ? 5 : 10));
     while (channels % block != 0) --block;
     return block;
 }

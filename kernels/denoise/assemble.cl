@@ -11,7 +11,7 @@ static inline vfloat source_pixels(__global const float* plane, int at, int step
 
 // `source` holds planes of `size` floats; `channel` is (plane, ChannelKind) per input channel. `from`: where in a plane the part's first pixel lies, its
 // steps to the next pixel of a row and of a column (negative or swapped when the part is turned); n, the image of the batch. Radiance is premultiplied.
-__kernel void assemble(__constant DenoiseParams* p, __constant SourceParams* s, __global const float* source, uint size, int4 from,
+__kernel void assemble(__constant DenoiseParams* p, SourceParams s, __global const float* source, uint size, int4 from,
                        __global const int2* channel, __global float* input, __global float4* splatted, __global float4* remodulation, __global float* target) {
     int x = (int)get_global_id(0) * CLVR_WIDTH, y = (int)get_global_id(1), n = from.w;
     if (x >= p->width || y >= p->height) return;
@@ -21,22 +21,22 @@ __kernel void assemble(__constant DenoiseParams* p, __constant SourceParams* s, 
 #define SOURCE(plane) source_pixels(source + (size_t)(plane) * size, at, from.y, left)
 #define PLANE(planes, channels, c, v) v_store(v_select(inside, v, (vfloat)(0.0f)), planes + plane_start(p, n, channels, c) + to)
 
-    for (int c = 0; c < s->channels; ++c) {
+    for (int c = 0; c < s.channels; ++c) {
         vfloat v = SOURCE(channel[c].x);
-        if (channel[c].y == CLVR_CHANNEL_RADIANCE) v = v_tonemap(v_min(v * s->exposure, (vfloat)(s->ceiling)));
+        if (channel[c].y == CLVR_CHANNEL_RADIANCE) v = v_tonemap(v_min(v * s.exposure, (vfloat)(s.ceiling)));
         if (channel[c].y == CLVR_CHANNEL_NORMAL) v = fma(v, (vfloat)(0.5f), (vfloat)(0.5f));
-        PLANE(input, s->channels, c, v);
+        PLANE(input, s.channels, c, v);
     }
 
     vfloat weight = (vfloat)(1.0f);
-    if (s->opacity >= 0) weight = SOURCE(s->opacity);
+    if (s.opacity >= 0) weight = SOURCE(s.opacity);
     vfloat radiance[3], factor[3];
     for (int k = 0; k < 3; ++k) {
         vfloat albedo = (vfloat)(1.0f);
-        if (s->albedo >= 0) albedo = v_max(SOURCE(s->albedo + k), (vfloat)(s->albedo_floor));
-        radiance[k] = v_min(SOURCE(s->beauty + k) * s->exposure, (vfloat)(s->ceiling)) / albedo;
+        if (s.albedo >= 0) albedo = v_max(SOURCE(s.albedo + k), (vfloat)(s.albedo_floor));
+        radiance[k] = v_min(SOURCE(s.beauty + k) * s.exposure, (vfloat)(s.ceiling)) / albedo;
         factor[k] = albedo * weight;
-        if (s->target >= 0) PLANE(target, 3, k, SOURCE(s->target + k) * s->exposure);
+        if (s.target >= 0) PLANE(target, 3, k, SOURCE(s.target + k) * s.exposure);
     }
     Colours colours = {radiance[0], radiance[1], radiance[2], weight}, factors = {factor[0], factor[1], factor[2], (vfloat)(0.0f)};
     store_colours(p, splatted, n, x, y, colours);

@@ -7,14 +7,10 @@
 namespace clvr::bench {
 namespace {
 
-/// A GPU needs more pixels than two cores do before it is busy.
-int times_of(const std::vector<Device>& devices) { return devices.front().facts().type == DeviceType::cpu ? 1 : 4; }
-
 int edge_of(Size size) { return size == Size::tiny ? 24 : 192; }
 
 StageRun path_trace(std::vector<Device>& devices, Size size) {
-    const int n = times_of(devices);
-    const Scene scene = size == Size::tiny ? benchmark_scene(8, 8, 1) : benchmark_scene(320 * n, 240 * n, 4);
+    const Scene scene = size == Size::tiny ? benchmark_scene(8, 8, 1) : benchmark_scene(320, 240, 4);
     const auto renderer = std::make_shared<Renderer>(devices, prepared_volume(edge_of(size)), scene);
     const auto frame = std::make_shared<Frame>();
     StageRun r;
@@ -26,8 +22,7 @@ StageRun path_trace(std::vector<Device>& devices, Size size) {
 
 StageRun feature_march(std::vector<Device>& devices, Size size) {
     Device d = devices.front();
-    const int n = times_of(devices);
-    const Scene scene = size == Size::tiny ? benchmark_scene(8, 8, 1) : benchmark_scene(320 * n, 240 * n, 1);
+    const Scene scene = size == Size::tiny ? benchmark_scene(8, 8, 1) : benchmark_scene(320, 240, 1);
     const auto parts = std::make_shared<SceneOnDevice>(d, prepared_volume(edge_of(size)), scene);
     const auto marcher = std::make_shared<Marcher>(d, *parts->volume, *parts->light, March::features, 1);
     const auto planes = std::make_shared<std::vector<float>>(march_planes(March::features) * std::size_t{parts->pixels});
