@@ -5,9 +5,11 @@
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <fmt/format.h>
 #include <future>
 #include <memory>
+#include <thread>
 
 namespace clvr {
 
@@ -70,18 +72,30 @@ Evaluation evaluate(const std::vector<Candidate>& candidates, const std::string&
     const auto noisy_of = [&](const PairView& view) { return view.noisy[static_cast<std::size_t>(frame)]; };
     Evaluation e;
     for (const auto& c : candidates) e.scores.push_back({c.name, {}, {}});
-    for (const auto& view : pairs.views) {
-        const Frame noisy = read_exr(noisy_of(view)), reference = read_exr(view.reference);
-        e.views.push_back(noisy_of(view));
-        naming(noisy_of(view), [&] {
-            std::vector<std::future<Metrics>> metrics; // while the device makes the next picture
-            for (const Candidate& c : candidates)
-                metrics.push_back(
-                    std::async(std::launch::async, [&, picture = c.denoise(noisy)] { return compare_frames(picture, reference); }));
-            for (std::size_t k = 0; k < candidates.size(); ++k) e.scores[k].views.push_back(metrics[k].get());
+    // Metrics are taken on threads, of several views at once where there are cores for them, while the device denoises the next view.
+    std::deque<std::vector<std::future<Metrics>>> waiting;
+    const std::size_t views_at_once = std::max<std::size_t>(1, std::thread::hardware_concurrency() / candidates.size());
+    const auto settle = [&] {
+        const std::size_t view = e.scores.front().views.size();
+        naming(e.views[view], [&] {
+            for (std::size_t k = 0; k < candidates.size(); ++k) e.scores[k].views.push_back(waiting.front()[k].get());
         });
-        if (seen) seen(static_cast<double>(e.views.size()) / static_cast<double>(pairs.views.size()));
+        waiting.pop_front();
+        if (seen) seen(static_cast<double>(view + 1) / static_cast<double>(pairs.views.size()));
+    };
+    for (const auto& view : pairs.views) {
+        if (waiting.size() == views_at_once) settle();
+        const Frame noisy = read_exr(noisy_of(view));
+        const auto reference = std::make_shared<const Frame>(read_exr(view.reference));
+        e.views.push_back(noisy_of(view));
+        waiting.emplace_back();
+        naming(e.views.back(), [&] {
+            for (const Candidate& c : candidates)
+                waiting.back().push_back(std::async(
+                    std::launch::async, [picture = c.denoise(noisy), reference] { return compare_frames(picture, *reference); }));
+        });
     }
+    while (!waiting.empty()) settle();
     for (Score& s : e.scores) s.mean = mean_of(s.views);
     return e;
 }
