@@ -48,7 +48,11 @@ Model::Level level_of(const std::string& text) {
 }
 
 Model start_of(const Options& o) {
-    if (!o.init.empty()) return read_model(o.init);
+    if (!o.init.empty()) {
+        for (const auto& [name, given] : {std::pair("--channels", &o.channels), {"--levels", &o.levels}})
+            if (!given->empty()) throw Error(ErrorKind::usage, "is set by the model of --init; leave one of them out", name);
+        return read_model(o.init);
+    }
     Model m = o.plain ? Model() : default_settings();
     if (!o.channels.empty()) m.channels = o.channels;
     if (m.channels.empty()) m.channels = reference_channels();

@@ -1,5 +1,6 @@
 // `clvr pairs`, `train`, `denoise` and `compare` as a user sees them.
 #include "host/io/frame_file.hpp"
+#include "host/io/model_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/runtime/scoped.hpp"
 
@@ -186,6 +187,14 @@ TEST_F(Learning, TrainsDenoisesAndCompares) {
     const Outcome resumed = run(again);
     ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
     EXPECT_EQ(text(path("k.safetensors")), model);
+
+    const Outcome levels = run({"train", path("a"), "-o", path("l.safetensors"), "--patch", "16", "--batch", "4", "--epochs", "1",
+                                "--patches-per-image", "2", "--levels", "2:8,4:4"});
+    ASSERT_EQ(levels.exit_code, 0) << levels.err;
+    const Model finer = read_model(path("l.safetensors"));
+    ASSERT_EQ(finer.levels.size(), 2u);
+    EXPECT_EQ(finer.levels[0].pixels, 2);
+    EXPECT_EQ(finer.levels[0].codes, 8);
 }
 
 TEST_F(Learning, RefusesWithOneLine) {
@@ -198,6 +207,11 @@ TEST_F(Learning, RefusesWithOneLine) {
         {{"train", path("none"), "-o", path("m.safetensors")}, 3},
         {{"train", path("none"), "-o", path("m.safetensors"), "--loss", "huber"}, 2},
         {{"train", path("none"), "-o", path("m.safetensors"), "--conv", "fft"}, 2},
+        {{"train", path("none"), "-o", path("m.safetensors"), "--levels", "4:4,8"}, 2},
+        {{"train", path("none"), "-o", path("m.safetensors"), "--levels", "4:4x"}, 2},
+        {{"train", path("none"), "-o", path("m.safetensors"), "--levels", "0:4"}, 2},
+        {{"train", path("none"), "-o", path("m.safetensors"), "--levels", "1:4,2:4,3:4,4:4,5:4,6:4,7:4,8:4,9:4"}, 2},
+        {{"train", path("none"), "-o", path("m.safetensors"), "--levels", "4:4", "--init", "default"}, 2},
         {{"compare", path("none.exr"), path("none.exr"), "--map", path("e.exr")}, 2},
         {{"compare", path("none.exr"), path("none.exr"), "--tonemap", "sepia"}, 2},
         {{"compare", path("none.png"), path("none.png")}, 3},

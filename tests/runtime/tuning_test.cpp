@@ -5,6 +5,7 @@
 #include "runtime/error.hpp"
 #include "tests/runtime/scoped.hpp"
 
+#include <algorithm>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -120,15 +121,16 @@ TEST_F(TuningFiles, NothingKnown) {
 }
 
 TEST(Shipped, EachFileIsUnderstoodAndFitsOneKindOfDevice) {
-    ASSERT_GE(embedded_tuning().size(), 2u);
+    ASSERT_GE(embedded_tuning().size(), 3u);
+    DeviceFacts nvidia = pocl(1);
+    nvidia.platform = "NVIDIA CUDA", nvidia.type = DeviceType::gpu;
+    const std::vector<DeviceFacts> kinds{pocl(1), pocl(4), pocl(8), pocl(16), nvidia};
     for (const auto& [name, text] : embedded_tuning()) {
         const ShippedTuning s = parse_shipped_tuning(text, name);
         EXPECT_FALSE(s.name.empty() || s.platform.empty()) << name;
-        int fits = 0;
-        for (const unsigned width : {1u, 4u, 8u, 16u}) fits += s.fits(pocl(width));
-        EXPECT_EQ(fits, 1) << name;
+        EXPECT_EQ(std::count_if(kinds.begin(), kinds.end(), [&](const DeviceFacts& d) { return s.fits(d); }), 1) << name;
     }
-    EXPECT_TRUE(shipped_tuning(pocl(16)) && shipped_tuning(pocl(8)));
+    EXPECT_TRUE(shipped_tuning(pocl(16)) && shipped_tuning(pocl(8)) && shipped_tuning(nvidia));
     EXPECT_FALSE(shipped_tuning(pocl(4)));
     DeviceFacts gpu = pocl(16);
     gpu.type = DeviceType::gpu;
