@@ -29,11 +29,15 @@ struct Options {
 Loss loss_of(const Options& o) {
     if (o.target == "noisy") return Loss::noisy;
     if (o.target != "reference") throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected reference or noisy", o.target), "--target");
-    const std::pair<const char*, Loss> losses[] = {
-        {"shifted-gamma", Loss::shifted_gamma}, {"reference", Loss::reference}, {"smape", Loss::smape}, {"relative-l2", Loss::relative_l2}};
+    const std::pair<const char*, Loss> losses[] = {{"shifted-gamma", Loss::shifted_gamma},
+                                                   {"reference", Loss::reference},
+                                                   {"smape", Loss::smape},
+                                                   {"relative-l2", Loss::relative_l2},
+                                                   {"shifted-gamma-l2", Loss::shifted_gamma_l2}};
     for (const auto& [name, loss] : losses)
         if (o.loss == name) return loss;
-    throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected shifted-gamma, reference, smape or relative-l2", o.loss), "--loss");
+    throw Error(ErrorKind::usage,
+                fmt::format("is \"{}\"; expected shifted-gamma, shifted-gamma-l2, reference, smape or relative-l2", o.loss), "--loss");
 }
 
 /// "PIXELS:CODES".
@@ -142,7 +146,7 @@ void add_train_command(CLI::App& app) {
     c->add_option("--lr", t.learning_rate, "Learning rate of Adam [0.0001]")->group("Training");
     c->add_option("--schedule", o->schedule, "Of the learning rate: constant or cosine [constant]")->group("Training");
     c->add_option("--clip-norm", t.step.clip_norm, "Greatest norm of a gradient; 0: not clipped [0]")->group("Training");
-    c->add_option("--loss", o->loss, "shifted-gamma, reference, smape or relative-l2 [shifted-gamma]")->group("Training");
+    c->add_option("--loss", o->loss, "shifted-gamma, shifted-gamma-l2, reference, smape or relative-l2 [shifted-gamma]")->group("Training");
     c->add_option("--target", o->target, "reference, or noisy: another noisy frame of the view [reference]")->group("Training");
     c->add_flag("--no-augment", o->no_augment, "Without the 8 dihedral transforms")->group("Training");
     c->add_option("--seed", t.seed, "Of initialisation and patches [0]")->group("Training");

@@ -3,7 +3,8 @@
 #include "lib/planes.clh"
 #include "lib/tonemap.clh"
 
-// 0: shifted gamma, 1: the reference's clipped gamma, 2: symmetric relative, 3: relative squared, 4: relative squared to the (frozen) result: noise to noise
+// 0: shifted gamma, 1: the reference's clipped gamma, 2: symmetric relative, 3: relative squared, 4: relative squared to the (frozen) result: noise to noise,
+// 5: shifted gamma, squared
 #ifndef CLVR_LOSS
 #define CLVR_LOSS 0
 #endif
@@ -44,6 +45,10 @@ static inline vfloat loss_of(vfloat result, vfloat target, vfloat* slope) {
     vfloat error = result - target, scale = fma(target, target, (vfloat)(FLOOR));
     *slope = error * 2.0f / scale;
     return error * error / scale;
+#elif CLVR_LOSS == 5
+    vfloat error = shifted(result) - shifted(target);
+    *slope = error * 2.0f * shifted_slope(result);
+    return error * error;
 #else
     vfloat error = result - target, raised = result + FLOOR, scale = v_max(raised * raised, (vfloat)(1e-8f));
     *slope = error * 2.0f / scale;

@@ -165,11 +165,12 @@ struct LossValue {
 int sign(double v) { return (v > 0) - (v < 0); }
 
 LossValue loss_of(GridLoss loss, double out, double target) {
-    if (loss == GridLoss::shifted_gamma) {
+    if (loss == GridLoss::shifted_gamma || loss == GridLoss::shifted_gamma_l2) {
         const double low = std::pow(0.01, gamma), steep = gamma * std::pow(0.01, gamma - 1);
         const auto t = [&](double v) { return v >= 0 ? std::pow(v + 0.01, gamma) - low : steep * v; };
-        const double e = t(out) - t(target);
-        return {std::abs(e), sign(e) * (out >= 0 ? gamma * std::pow(out + 0.01, gamma - 1) : steep), 2 * sign(e) + (out >= 0)};
+        const double e = t(out) - t(target), slope = out >= 0 ? gamma * std::pow(out + 0.01, gamma - 1) : steep;
+        if (loss == GridLoss::shifted_gamma_l2) return {e * e, 2 * e * slope, out >= 0};
+        return {std::abs(e), sign(e) * slope, 2 * sign(e) + (out >= 0)};
     }
     if (loss == GridLoss::reference) {
         const auto tm = [](double v) { return std::clamp(std::pow(std::max(v, 0.0), gamma), 0.0, 1.0); };

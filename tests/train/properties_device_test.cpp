@@ -223,7 +223,7 @@ TEST(Properties, BlackStaysBlackWithoutAGradient) {
     Device device = test_device();
     const Frame done = Denoiser(device, trained_like_model()).denoise(black);
     for (const float v : done.at("G")) ASSERT_EQ(v, 0);
-    for (const Loss loss : {Loss::shifted_gamma, Loss::reference, Loss::smape, Loss::relative_l2, Loss::noisy}) {
+    for (const Loss loss : {Loss::shifted_gamma, Loss::reference, Loss::smape, Loss::relative_l2, Loss::noisy, Loss::shifted_gamma_l2}) {
         StepConfig config;
         config.loss = loss;
         config.patch = 24;
