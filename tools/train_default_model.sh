@@ -1,7 +1,7 @@
 #!/bin/bash
 # Makes the default model again: volumes that clvr computes, 24 views of each in three kinds of light, then the training.
 # Usage: train_default_model.sh DIR [CLVR]
-# Goes on where it was interrupted. On two cores: about 2 hours for the pairs, half an hour for the training; on a large GPU minutes.
+# Goes on where it was interrupted. On two cores: about 2 hours for the pairs, 20 minutes for the training; on a large GPU minutes.
 set -euo pipefail
 folder=$1
 clvr=${2:-build/release/clvr}
