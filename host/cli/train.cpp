@@ -6,7 +6,6 @@
 #include "host/io/atomic_file.hpp"
 #include "host/io/model_file.hpp"
 #include "host/train/trainer.hpp"
-#include "kernels/shared/denoise_params.h"
 #include "runtime/error.hpp"
 
 #include <cstdio>
@@ -44,11 +43,9 @@ Loss loss_of(const Options& o) {
 Model::Level level_of(const std::string& text) {
     Model::Level level;
     int end = 0;
-    if (std::sscanf(text.c_str(), "%d:%d%n", &level.pixels, &level.codes, &end) == 2 && static_cast<std::size_t>(end) == text.size() &&
-        level.pixels >= 1 && level.pixels <= 64 && level.codes >= 4 && level.codes <= 256)
+    if (std::sscanf(text.c_str(), "%d:%d%n", &level.pixels, &level.codes, &end) == 2 && static_cast<std::size_t>(end) == text.size())
         return level;
-    throw Error(ErrorKind::usage, fmt::format("has \"{}\"; expected PIXELS:CODES with 1 to 64 pixels and 4 to 256 codes, as 4:4", text),
-                "--levels");
+    throw Error(ErrorKind::usage, fmt::format("has \"{}\"; expected PIXELS:CODES, as 4:4", text), "--levels");
 }
 
 Model start_of(const Options& o) {
@@ -61,10 +58,13 @@ Model start_of(const Options& o) {
     if (!o.channels.empty()) m.channels = o.channels;
     if (m.channels.empty()) m.channels = reference_channels();
     if (!o.levels.empty()) {
-        if (o.levels.size() > CLVR_LEVELS_MAX)
-            throw Error(ErrorKind::usage, fmt::format("has {} levels; expected 1 to {}", o.levels.size(), CLVR_LEVELS_MAX), "--levels");
         m.levels.clear();
         for (const auto& text : o.levels) m.levels.push_back(level_of(text));
+        try {
+            validate_levels(m.levels);
+        } catch (const Error& e) {
+            throw Error(ErrorKind::usage, e.what(), "--levels");
+        }
     }
     m.hidden = o.hidden;
     m.kernel = o.kernel;

@@ -1,5 +1,6 @@
 #include "host/denoise/baselines.hpp"
 #include "host/denoise/channels.hpp"
+#include "host/denoise/neural_grid.hpp"
 #include "kernels/shared/filter_params.h"
 #include "runtime/error.hpp"
 
@@ -25,12 +26,12 @@ public:
     Filter(const Device& device, const Frame& frame) : device_(device), frame_(frame) {
         for (const char* c : colours)
             if (!frame.has(c)) throw Error(ErrorKind::input, fmt::format("lacks channel {}", c));
-        width_ = device.tunable("conv_width", device.facts().type == DeviceType::cpu ? 16 : 1);
+        width_ = NeuralGrid::pixel_width(device);
         shape_.width = frame.width, shape_.height = frame.height, shape_.pad = pad, shape_.step = 1;
         shape_.row = (frame.width + width_ - 1) / width_ * width_ + 2 * pad;
         shape_.plane = shape_.row * (frame.height + 2 * pad);
-        opacity_ = channel(frame.has("opacity.A") ? "opacity.A" : "A");
-        for (int c = 0; c < 3; ++c) albedo_[c] = channel(features[1 + c]);
+        opacity_ = frame.opacity();
+        for (int c = 0; c < 3; ++c) albedo_[c] = frame.find(features[1 + c]);
         upload();
     }
 
@@ -62,13 +63,13 @@ public:
         f.width = shape_.width, f.height = shape_.height, f.attributes = frame_.attributes;
         for (int c = 0; c < 3; ++c) {
             std::vector<float>& to = f.channel(colours[c]);
-            const float* const background = channel(std::string("background.") + colours[c]);
+            const std::vector<float>* const background = frame_.find(std::string("background.") + colours[c]);
             for (std::size_t i = 0; i < to.size(); ++i) {
                 to[i] = std::max(all[c * plane() + at(i)] * albedo(c, i) * opacity(i), 0.0f);
-                if (background) to[i] += (1 - opacity(i)) * finite(background[i]);
+                if (background) to[i] += (1 - opacity(i)) * finite((*background)[i]);
             }
         }
-        if (opacity_) f.channels["A"].assign(opacity_, opacity_ + f.pixels());
+        if (opacity_) f.channels["A"] = *opacity_;
         return f;
     }
 
@@ -77,30 +78,30 @@ private:
     const Frame& frame_;
     shared::FilterParams shape_{};
     int width_ = 1;
-    const float *opacity_ = nullptr, *albedo_[3] = {}; // of the frame, if it has them
+    const std::vector<float>*opacity_ = nullptr, *albedo_[3] = {}; // of the frame, if it has them
     Buffer features_;
-
-    const float* channel(const std::string& name) const { return frame_.has(name) ? frame_.at(name).data() : nullptr; }
 
     std::size_t plane() const { return static_cast<std::size_t>(shape_.plane); }
     std::size_t at(std::size_t i) const {
         const std::size_t w = static_cast<std::size_t>(shape_.width);
         return (i / w + pad) * static_cast<std::size_t>(shape_.row) + pad + i % w;
     }
-    float opacity(std::size_t i) const { return opacity_ ? finite(opacity_[i]) : 1; }
-    float albedo(int c, std::size_t i) const { return albedo_[c] ? std::max(finite(albedo_[c][i]), albedo_floor) : 1; }
+    float opacity(std::size_t i) const { return opacity_ ? finite((*opacity_)[i]) : 1; }
+    float albedo(int c, std::size_t i) const { return albedo_[c] ? std::max(finite((*albedo_[c])[i]), albedo_floor) : 1; }
 
     void upload() {
         std::vector<float> planes(CLVR_FILTER_FEATURES * plane());
         for (std::size_t i = 0; i < frame_.pixels(); ++i) planes[at(i)] = opacity(i);
         for (int k = 1; k < CLVR_FILTER_FEATURES; ++k)
-            if (const float* const values = channel(features[k]))
-                for (std::size_t i = 0; i < frame_.pixels(); ++i) planes[static_cast<std::size_t>(k) * plane() + at(i)] = finite(values[i]);
+            if (const std::vector<float>* const values = frame_.find(features[k]))
+                for (std::size_t i = 0; i < frame_.pixels(); ++i)
+                    planes[static_cast<std::size_t>(k) * plane() + at(i)] = finite((*values)[i]);
         planes.resize(planes.size() + 16); // rows are read 16 pixels at once
         features_ = device_.upload(planes, "features");
 
-        const float shares[] = {0.2126f, 0.7152f, 0.0722f}, *variance[3];
-        for (int c = 0; c < 3; ++c) variance[c] = channel(std::string("variance.") + colours[c]);
+        const float shares[] = {0.2126f, 0.7152f, 0.0722f};
+        const std::vector<float>* variance[3];
+        for (int c = 0; c < 3; ++c) variance[c] = frame_.find(std::string("variance.") + colours[c]);
         has_variance = variance[0] && variance[1] && variance[2];
         planes.assign(4 * plane() + 16, 0);
         float* const luminance_variance = &planes[3 * plane()];
@@ -110,7 +111,7 @@ private:
             for (std::size_t i = 0; i < frame_.pixels(); ++i) {
                 const float divisor = albedo(c, i) * std::max(opacity(i), opacity_floor), share = shares[c] / divisor;
                 to[at(i)] = finite(beauty(i) / divisor);
-                if (has_variance) luminance_variance[at(i)] += share * share * finite(variance[c][i]);
+                if (has_variance) luminance_variance[at(i)] += share * share * finite((*variance[c])[i]);
             }
         }
         colour = device_.upload(planes, "colour");

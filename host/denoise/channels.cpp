@@ -75,8 +75,8 @@ void ChannelPlan::check(const Frame& frame) const {
 }
 
 BeautyWithoutBackground::BeautyWithoutBackground(const Frame& frame, const std::string& colour) : beauty_(frame.at(colour).data()) {
-    const std::string background = "background." + colour;
-    if (frame.has(background) && frame.has("A")) background_ = frame.at(background).data(), alpha_ = frame.at("A").data();
+    const std::vector<float>*background = frame.find("background." + colour), *alpha = frame.find("A");
+    if (background && alpha) background_ = background->data(), alpha_ = alpha->data();
 }
 
 std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const Region& region, std::vector<float>& planes) const {
@@ -106,8 +106,7 @@ std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const R
 
 double exposure_of(const Frame& frame) {
     constexpr int block = 16;
-    const char* const name = frame.has("opacity.A") ? "opacity.A" : "A";
-    const std::vector<float>* const opacities = frame.has(name) ? &frame.at(name) : nullptr;
+    const std::vector<float>* const opacities = frame.opacity();
     const BeautyWithoutBackground red(frame, "R"), green(frame, "G"), blue(frame, "B");
     double sum = 0;
     int blocks = 0;

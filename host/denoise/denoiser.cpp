@@ -185,12 +185,12 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     for (std::vector<float>* result : results)
         for (float& v : *result) v = std::max(v / params.exposure, 0.0f);
     if (frame.has("variance.R") && frame.has("variance.G") && frame.has("variance.B")) blend_by_variance(s.device, frame, done);
-    const std::vector<float>* opacity = frame.has("opacity.A") ? &frame.at("opacity.A") : frame.has("A") ? &frame.at("A") : nullptr;
+    const std::vector<float>* const opacity = frame.opacity();
     for (const char* c : colours) {
-        const auto background = frame.channels.find(std::string("background.") + c);
-        if (background == frame.channels.end() || !opacity) continue;
+        const std::vector<float>* const background = frame.find(std::string("background.") + c);
+        if (!background || !opacity) continue;
         std::vector<float>& to = done.channel(c);
-        for (std::size_t i = 0; i < to.size(); ++i) to[i] += (1 - (*opacity)[i]) * background->second[i];
+        for (std::size_t i = 0; i < to.size(); ++i) to[i] += (1 - (*opacity)[i]) * (*background)[i];
     }
     done.attributes["clvr.denoised"] = "1";
     return done;

@@ -1,4 +1,5 @@
 #include "host/denoise/model.hpp"
+#include "kernels/shared/denoise_params.h"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -88,6 +89,14 @@ void initialise(Model& m, std::uint64_t seed) {
     m.conv2_bias.assign(out, 0);
 }
 
+void validate_levels(const std::vector<Model::Level>& levels) {
+    check_range("the number of levels", static_cast<int>(levels.size()), 1, CLVR_LEVELS_MAX);
+    for (const auto& level : levels) {
+        check_range("a level's pixels per cell", level.pixels, 1, 64);
+        check_range("a level's codes per cell", level.codes, 4, 256);
+    }
+}
+
 void validate(const Model& m) {
     check_range("the number of channels", static_cast<int>(m.channels.size()), 1, 64);
     std::set<std::string> seen;
@@ -100,11 +109,7 @@ void validate(const Model& m) {
     check_range("the number of hidden channels", m.hidden, 1, 256);
     check_range("the kernel size", m.kernel, 1, 15);
     if (m.kernel % 2 == 0) fail(fmt::format("model: the kernel size is {}; expected an odd number", m.kernel));
-    check_range("the number of levels", static_cast<int>(m.levels.size()), 1, 8);
-    for (const auto& level : m.levels) {
-        check_range("a level's pixels per cell", level.pixels, 1, 64);
-        check_range("a level's codes per cell", level.codes, 4, 256);
-    }
+    validate_levels(m.levels);
     if (!(m.albedo_floor > 0 && m.albedo_floor <= 1))
         fail(fmt::format("model: the albedo floor is {}; expected above 0, up to 1", m.albedo_floor));
     const std::size_t taps = static_cast<std::size_t>(m.kernel) * m.kernel, hidden = static_cast<std::size_t>(m.hidden),

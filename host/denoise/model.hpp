@@ -55,4 +55,7 @@ void initialise(Model& model, std::uint64_t seed);
 /// hidden 1..256, kernel odd 1..15, levels 1..8 with pixels 1..64 and codes 4..256), tensors of other sizes, non-finite weights.
 void validate(const Model& model);
 
+/// The part of validate that concerns the levels.
+void validate_levels(const std::vector<Model::Level>& levels);
+
 } // namespace clvr

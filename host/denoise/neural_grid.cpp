@@ -19,16 +19,15 @@ Range conv_group(const Device& device) {
     return {x, static_cast<std::size_t>(device.tunable("conv_group_y", 4))};
 }
 
-/// Channels computed at once: the greatest divisor of `channels` up to `most`, so that none is computed in vain.
-int divisor(int channels, int most) {
+int round_up(int n, int multiple) { return (n + multiple - 1) / multiple * multiple; }
+
+} // namespace
+
+int channels_at_once(int channels, int most) {
     int d = std::min(channels, most);
     while (channels % d != 0) --d;
     return d;
 }
-
-int round_up(int n, int multiple) { return (n + multiple - 1) / multiple * multiple; }
-
-} // namespace
 
 int Convolution::row_granularity(const Device& device, int row_width) {
     // Also a multiple of 16, the lanes of the weight gradients.
@@ -38,7 +37,8 @@ int Convolution::row_granularity(const Device& device, int row_width) {
 Convolution::Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
                          bool mirrored, int row_width)
     : group_(conv_group(device)), in_(in), out_(out), size_(kernel) {
-    const int block = divisor(out, device.tunable("conv_block", 5)), width = conv_width(device), vectors = conv_vectors(device, row_width);
+    const int block = channels_at_once(out, device.tunable("conv_block", 5)), width = conv_width(device),
+              vectors = conv_vectors(device, row_width);
     step_ = width * vectors;
     kernel_ = device.kernel(stage, {{"CLVR_IN", std::to_string(in)},
                                     {"CLVR_OUT", std::to_string(out)},

@@ -15,6 +15,9 @@ struct BatchShape {
     bool target = false; ///< images come with targets
 };
 
+/// Channels that a work-item computes at once: the greatest divisor of `channels` up to `most`, so that none is computed in vain.
+int channels_at_once(int channels, int most);
+
 /// A convolution kernel with its weights in the kernel's order.
 class Convolution {
 public:

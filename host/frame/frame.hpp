@@ -18,6 +18,11 @@ struct Frame {
     std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
     bool has(const std::string& name) const { return channels.count(name) != 0; }
     const std::vector<float>& at(const std::string& name) const { return channels.at(name); }
+    /// The channel, or null.
+    const std::vector<float>* find(const std::string& name) const {
+        const auto found = channels.find(name);
+        return found == channels.end() ? nullptr : &found->second;
+    }
     /// The channel, made (all 0) when absent.
     std::vector<float>& channel(const std::string& name) {
         auto& c = channels[name];
@@ -26,7 +31,9 @@ struct Frame {
     }
     /// The opacity with which the picture is shown: A; null where it is opaque, as it has none or lies over a background (background.R ...;
     /// A is the camera rays' opacity there, too).
-    const std::vector<float>* shown_alpha() const { return has("A") && !has("background.R") ? &at("A") : nullptr; }
+    const std::vector<float>* shown_alpha() const { return has("background.R") ? nullptr : find("A"); }
+    /// The best that is known of the camera rays' opacity: opacity.A (free of noise), else A, else null.
+    const std::vector<float>* opacity() const { return has("opacity.A") ? find("opacity.A") : find("A"); }
 };
 
 /// SHA-256 (hex) over size, channel names in order and the bits of every pixel; attributes do not count.

@@ -72,9 +72,7 @@ std::pair<double, double> ssim_of(const Frame& image, const Frame& reference) {
     constexpr double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
     const int width = image.width, height = image.height, w = width - window + 1, h = height - window + 1;
     if (w < 1 || h < 1) throw Error(ErrorKind::input, fmt::format("{} x {} pixels are too few; SSIM needs 11 x 11", width, height));
-    const std::vector<float>* opacity = reference.has("opacity.A") ? &reference.at("opacity.A")
-                                        : reference.has("A")       ? &reference.at("A")
-                                                                   : nullptr;
+    const std::vector<float>* const opacity = reference.opacity();
     double all = 0, opaque = 0;
     std::size_t count = 0, opaque_count = 0;
     for (const char* c : colours) {

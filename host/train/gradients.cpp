@@ -10,9 +10,7 @@ constexpr std::size_t lanes = 16; // partial sums of every reduction, at every w
 
 /// Output channels that a work-item of weight_gradient takes.
 int block_of(const Device& device, int channels) {
-    int block = std::min(channels, device.tunable("gradient_block", device.facts().type == DeviceType::cpu ? 5 : 10));
-    while (channels % block != 0) --block;
-    return block;
+    return channels_at_once(channels, device.tunable("gradient_block", device.facts().type == DeviceType::cpu ? 5 : 10));
 }
 
 std::size_t planes_bytes(const shared::DenoiseParams& p, std::size_t channels, int images) {
@@ -42,8 +40,7 @@ Gradients::Gradients(const Device& device, const Model& model, Loss loss, const 
       levels_(static_cast<int>(model.levels.size())), kernel_(model.kernel), parameters_(model.parameters()),
       conv1_(model.conv1_weight.size()), bias1_(model.conv1_bias.size()), conv2_(model.conv2_weight.size()),
       block1_(block_of(device, hidden_)), block2_(block_of(device, outputs_)) {
-    const bool cpu = device.facts().type == DeviceType::cpu;
-    width_ = device_.tunable("conv_width", cpu ? 16 : 1);
+    width_ = NeuralGrid::pixel_width(device_);
     const std::string width = std::to_string(width_), size = std::to_string(kernel_);
     loss_ = device_.kernel("train/loss", {{"CLVR_WIDTH", width}, {"CLVR_LOSS", std::to_string(static_cast<int>(loss))}});
     slice_gradient_ = device_.kernel("train/slice_gradient", {{"CLVR_WIDTH", width}});

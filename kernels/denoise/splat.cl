@@ -47,12 +47,8 @@ __kernel void splat(__constant DenoiseParams* p, int level_number, int planes, _
                 for (int i = 0; i < CLVR_WIDTH && x + i < x1; ++i) {
                     if (!CLVR_WHOLE && (to[i] < -1 || to[i] >= CLVR_BINS)) continue;
                     float4 colour = splatted[y * p->width + x + i];
-#if CLVR_BINS == 1 // the sum stays in registers
-                    sum[0] = fma((float4)(to[i] == 0 ? lower[i] : upper[i]), colour, sum[0]);
-#else
                     sum[to[i]] = fma((float4)(lower[i]), colour, sum[to[i]]);
                     sum[to[i] + 1] = fma((float4)(upper[i]), colour, sum[to[i] + 1]);
-#endif
                 }
             }
         }
