@@ -2,7 +2,7 @@
 #include "host/cli/commands.hpp"
 #include "host/frame/error_pictures.hpp"
 #include "host/frame/metrics.hpp"
-#include "host/io/frame_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "host/cli/volume_options.hpp"
 #include "host/dataset/download.hpp"
 #include "host/dataset/manifest.hpp"
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "host/volume/phantom.hpp"
 #include "runtime/error.hpp"
 

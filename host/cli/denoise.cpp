@@ -2,8 +2,8 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
 #include "host/denoise/denoiser.hpp"
-#include "host/io/frame_file.hpp"
-#include "host/io/model_file.hpp"
+#include "host/io/model/model_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "host/render/scene.hpp"
 #include "runtime/dealer.hpp"
 

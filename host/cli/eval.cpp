@@ -5,8 +5,8 @@
 #include "host/eval/evaluation_json.hpp"
 #include "host/eval/report.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/frame_file.hpp"
-#include "host/io/model_file.hpp"
+#include "host/io/model/model_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
 

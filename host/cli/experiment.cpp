@@ -88,7 +88,7 @@ ExperimentSettings settings_of(const Options& o) {
     if (dataset) picture.zoom = dataset->zoom;
     s.scene = scene_of(picture);
     s.scene.volume = volume;
-    if (dataset && fs::path(volume).extension() == ".raw") s.scene.raw.spacing = dataset->spacing; // its name has dims and type alone
+    if (dataset && fs::path(volume).extension() == ".raw") s.scene.reading.spacing = dataset->spacing; // its name has dims and type alone
     if (!s.computed.empty()) {
         s.size = phantom_size(s.computed);
         if (const Dataset* like = published_as(s.computed)) s.size = {like->dims, voxel_type_named(like->type).value_or(s.size.type)};

@@ -160,6 +160,7 @@ void print_text(const Report& r) {
     fmt::print("\n{}\n", histogram_chart(r.histogram.bins, r.range[0], r.range[1], whole ? r.histogram.high - r.histogram.low + 1 : 0));
     for (const MemoryPlan& plan : r.plans) print_plan(plan, v);
     if (r.plans.empty()) print_line("device", "none: " + r.rule);
+    for (const std::string& decision : v.decisions) print_line("read as", decision);
     for (const std::string& note : v.notes) print_line("note", note);
 }
 
@@ -200,6 +201,7 @@ void print_json(const Report& r) {
                            {"range", r.range},
                            {"histogram", r.histogram.bins},
                            {"repaired_voxels", v.repaired},
+                           {"decisions", v.decisions},
                            {"notes", v.notes},
                            {"device_rule", r.rule},
                            {"memory_plan", plans}};

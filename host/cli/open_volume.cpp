@@ -13,6 +13,7 @@ bool is_demo_volume(const std::string& name) { return name.compare(0, demo_prefi
 
 Voxels open_volume(const std::string& name, const VolumeReadOptions& options, Device& device) {
     Voxels v = is_demo_volume(name) ? make_phantom(device, name.substr(demo_prefix.size())) : read_volume(name, options);
+    for (const auto& decision : v.decisions) spdlog::debug("{}: {}", name, decision);
     for (const auto& note : v.notes) spdlog::warn("{}: {}", name, note);
     return v;
 }

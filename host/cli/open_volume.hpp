@@ -1,6 +1,6 @@
 // The volume that a command works on: a file, a folder, or one that clvr computes.
 #pragma once
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "runtime/device.hpp"
 
 #include <string>

@@ -6,7 +6,7 @@
 #include "host/cli/render_options.hpp"
 #include "host/experiment/pairs_folder.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/scene_inputs.hpp"
+#include "host/io/scene/scene_inputs.hpp"
 #include "runtime/error.hpp"
 
 #include <fmt/format.h>
@@ -78,8 +78,7 @@ void pairs(const Options& o) {
     std::vector<Device> devices = open_devices(o.scene.devices);
     const Scene& first = plan.scenes.front();
     const EnvironmentTables environment = read_environment(first);
-    const PreparedVolume volume(
-        on_first(devices, [&](Device& device) { return open_volume(first.volume, reading_options(first), device); }));
+    const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(first.volume, first.reading, device); }));
     settle(plan, volume);
     begin_pairs_folder(o.folder, plan);
 

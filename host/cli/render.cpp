@@ -6,10 +6,10 @@
 #include "host/cli/render_options.hpp"
 #include "host/denoise/denoiser.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/frame_file.hpp"
-#include "host/io/model_file.hpp"
-#include "host/io/scene_file.hpp"
-#include "host/io/scene_inputs.hpp"
+#include "host/io/model/model_file.hpp"
+#include "host/io/picture/frame_file.hpp"
+#include "host/io/scene/scene_file.hpp"
+#include "host/io/scene/scene_inputs.hpp"
 #include "host/render/params.hpp"
 #include "host/render/renderer.hpp"
 #include "runtime/embedded.hpp"
@@ -118,8 +118,7 @@ void render(const RenderOptions& o) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const EnvironmentTables environment = read_environment(scene);
     std::vector<Device> devices = open_devices(o.devices);
-    const PreparedVolume volume(
-        on_first(devices, [&](Device& device) { return open_volume(scene.volume, reading_options(scene), device); }));
+    const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(scene.volume, scene.reading, device); }));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
         const std::string hash = volume_sha256(volume.voxels);
         if (!scene.volume_sha256.empty() && scene.volume_sha256 != hash)

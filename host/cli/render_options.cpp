@@ -2,7 +2,7 @@
 #include "host/cli/open_volume.hpp"
 #include "host/cli/volume_options.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/scene_file.hpp"
+#include "host/io/scene/scene_file.hpp"
 #include "host/volume/srgb.hpp"
 #include "runtime/error.hpp"
 
@@ -181,13 +181,7 @@ Scene scene_of(const RenderOptions& o) {
         s = parse_scene(read_text(o.input), o.input);
     else
         s.volume = o.input;
-    if (o.volume.frame) s.frame = o.volume.frame;
-    if (!o.volume.series.empty()) s.series = o.volume.series;
-    s.allow_gaps |= o.volume.allow_gaps;
-    if (o.volume.dims) s.raw.dims = o.volume.dims;
-    if (o.volume.spacing) s.raw.spacing = o.volume.spacing;
-    if (!o.volume.type.empty()) s.raw.type = o.volume.type;
-    if (!o.volume.endian.empty()) s.raw.endian = o.volume.endian;
+    override_reading(s.reading, o.volume);
 
     const auto set = [](auto& field, const auto& option) {
         if (option) field = *option;

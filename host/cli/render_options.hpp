@@ -1,7 +1,7 @@
 // The options of `clvr render`, as text from the command line to a Scene.
 #pragma once
 #include "host/cli/device_options.hpp"
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "host/render/scene.hpp"
 
 #include <CLI/CLI.hpp>

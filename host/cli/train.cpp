@@ -4,7 +4,7 @@
 #include "host/cli/interrupt.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/model_file.hpp"
+#include "host/io/model/model_file.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
 

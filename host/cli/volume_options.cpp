@@ -44,11 +44,31 @@ Int3 parse_dims(const std::string& text) {
     return {n[0], n[1], n[2]};
 }
 
+void override_reading(VolumeReadOptions& options, const VolumeReadOptions& given) {
+    if (given.frame) options.frame = given.frame;
+    if (given.channel) options.channel = given.channel;
+    if (!given.array.empty()) options.array = given.array;
+    if (!given.series.empty()) options.series = given.series;
+    options.allow_gaps |= given.allow_gaps;
+    options.recursive |= given.recursive;
+    if (given.dims) options.dims = given.dims;
+    if (given.spacing) options.spacing = given.spacing;
+    if (!given.type.empty()) options.type = given.type;
+    if (!given.endian.empty()) options.endian = given.endian;
+}
+
 void add_volume_options(CLI::App& command, VolumeReadOptions& options) {
     constexpr const char* group = "Reading the volume";
     command.add_option("--frame", options.frame, "Which volume of a time series, counted from 0 [0]")->type_name("N")->group(group);
-    command.add_option("--series", options.series, "DICOM: the series with this UID [the largest]")->type_name("UID")->group(group);
+    command.add_option("--channel", options.channel, "Which channel of several, counted from 0 [0, and clvr says so]")
+        ->type_name("N")
+        ->group(group);
+    command.add_option("--array", options.array, "VTK: the data array of this name [the active one]")->type_name("NAME")->group(group);
+    command.add_option("--series", options.series, "DICOM: the series with this UID [the one with the most slices that make a volume]")
+        ->type_name("UID")
+        ->group(group);
     command.add_flag("--allow-gaps", options.allow_gaps, "DICOM: interpolate missing slices")->group(group);
+    command.add_flag("--recursive", options.recursive, "A folder: look into the folders inside it too")->group(group);
     command
         .add_option_function<std::string>(
             "--dims", [&options](const std::string& text) { options.dims = parse_dims(text); }, "RAW: size in voxels")
@@ -59,7 +79,8 @@ void add_volume_options(CLI::App& command, VolumeReadOptions& options) {
         ->group(group);
     command
         .add_option_function<std::string>(
-            "--spacing", [&options](const std::string& text) { options.spacing = parse_spacing(text); }, "RAW, TIFF: voxel size in mm")
+            "--spacing", [&options](const std::string& text) { options.spacing = parse_spacing(text); },
+            "Voxel size in mm where the file gives none (RAW, TIFF, PNG, NumPy, HDF5)")
         ->type_name("SXxSYxSZ")
         ->group(group);
     command.add_option("--endian", options.endian, "RAW: byte order, little or big [little]")->type_name("ORDER")->group(group);

@@ -1,6 +1,6 @@
 #include "host/eval/evaluation.hpp"
 #include "host/denoise/denoiser.hpp"
-#include "host/io/frame_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "host/train/pairs.hpp"
 #include "runtime/error.hpp"
 

@@ -1,7 +1,7 @@
 #include "host/eval/report.hpp"
 #include "host/eval/chart.hpp"
 #include "host/frame/error_pictures.hpp"
-#include "host/io/frame_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "host/train/pairs.hpp"
 #include "runtime/error.hpp"
 

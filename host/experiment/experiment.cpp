@@ -5,9 +5,9 @@
 #include "host/experiment/settled_folder.hpp"
 #include "host/experiment/stage_times.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/model_file.hpp"
-#include "host/io/scene_inputs.hpp"
-#include "host/io/volume_file.hpp"
+#include "host/io/model/model_file.hpp"
+#include "host/io/scene/scene_inputs.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "runtime/error.hpp"
 
 #include <filesystem>
@@ -170,7 +170,7 @@ private:
 
 Voxels experiment_volume(const ExperimentSettings& s, const std::string& folder, Device& device, const std::atomic<bool>& interrupted) {
     const std::string path = volume_path(s, folder);
-    if (s.computed.empty()) return read_volume(path, reading_options(s.scene));
+    if (s.computed.empty()) return read_volume(path, s.scene.reading);
     // Always as the file has it (which rounds the geometry to floats), also when it was made just now.
     if (!fs::exists(path)) write_nifti(make_phantom(device, s.computed, {s.size.dims, s.size.type, s.volume_seed, &interrupted}), path);
     if (interrupted) interrupted_here();

@@ -1,6 +1,7 @@
 #include "host/experiment/experiment_estimate.hpp"
 #include "host/eval/evaluation.hpp"
-#include "host/io/scene_inputs.hpp"
+#include "host/io/scene/scene_inputs.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -161,7 +162,7 @@ ExperimentEstimate estimate_experiment(const ExperimentSettings& s, const std::s
             StageEstimate making;
             making.name = "volume";
             making.seconds = seconds_of([&] {
-                volume.emplace(s.computed.empty() ? read_volume(volume_path(s, folder), reading_options(s.scene))
+                volume.emplace(s.computed.empty() ? read_volume(volume_path(s, folder), s.scene.reading)
                                                   : make_phantom(devices.front(), s.computed,
                                                                  {s.size.dims, s.size.type, s.volume_seed, &control.interrupted}));
             });

@@ -1,6 +1,6 @@
 #include "host/experiment/experiment_settings.hpp"
-#include "host/io/model_file.hpp"
-#include "host/io/scene_file.hpp"
+#include "host/io/model/model_file.hpp"
+#include "host/io/scene/scene_file.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>

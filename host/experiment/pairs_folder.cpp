@@ -1,8 +1,8 @@
 #include "host/experiment/pairs_folder.hpp"
 #include "host/experiment/settled_folder.hpp"
 #include "host/io/atomic_file.hpp"
-#include "host/io/frame_file.hpp"
-#include "host/io/scene_file.hpp"
+#include "host/io/picture/frame_file.hpp"
+#include "host/io/scene/scene_file.hpp"
 #include "host/train/pairs.hpp"
 #include "runtime/error.hpp"
 

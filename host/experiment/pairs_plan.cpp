@@ -1,6 +1,6 @@
 #include "host/experiment/pairs_plan.hpp"
-#include "host/io/scene_file.hpp"
-#include "host/io/volume_file.hpp"
+#include "host/io/scene/scene_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "host/render/params.hpp"
 #include "runtime/error.hpp"
 

@@ -83,7 +83,8 @@ void check_clips(const Scene& scene) {
 
 void validate(const Scene& scene) {
     if (scene.volume.empty()) refuse("VOLUME", "empty", "a file, a folder or demo:head");
-    if (scene.frame < 0) refuse("--frame", fmt::format("{}", scene.frame), "0 or more");
+    if (scene.reading.frame < 0) refuse("--frame", fmt::format("{}", scene.reading.frame), "0 or more");
+    if (scene.reading.channel.value_or(0) < 0) refuse("--channel", fmt::format("{}", *scene.reading.channel), "0 or more");
     check_range("--size (width)", scene.width, 1, largest_frame_side);
     check_range("--size (height)", scene.height, 1, largest_frame_side);
     check_range("--spp", scene.spp, 1, largest_spp);

@@ -3,6 +3,7 @@
 #include "host/frame/tonemap.hpp"
 #include "host/volume/transfer_function.hpp"
 #include "host/volume/vec.hpp"
+#include "host/volume/volume_read_options.hpp"
 
 #include <array>
 #include <cstdint>
@@ -49,21 +50,10 @@ struct ClipPlane {
     double offset = 0; ///< [mm]
 };
 
-/// How to read a file that does not say it by itself: RAW, and a TIFF's spacing. Fields as in VolumeReadOptions.
-struct RawLayout {
-    std::optional<Int3> dims;
-    std::string type;
-    std::optional<Double3> spacing; ///< [mm]
-    std::string endian;
-};
-
 struct Scene {
     std::string volume;        ///< file, folder or "demo:head"
     std::string volume_sha256; ///< of dims, type and decoded voxels; checked when a saved scene is rendered again (empty: unchecked)
-    int frame = 0;             ///< of a 4-D file
-    std::string series;        ///< DICOM SeriesInstanceUID, empty: the largest
-    bool allow_gaps = false;
-    RawLayout raw;
+    VolumeReadOptions reading; ///< how the volume's file is read
     std::optional<TransferFunction> transfer; ///< absent: automatic
     Mode mode = Mode::path;
     Shading shading = Shading::automatic;

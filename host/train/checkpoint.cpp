@@ -1,5 +1,5 @@
 #include "host/train/checkpoint.hpp"
-#include "host/io/model_file.hpp"
+#include "host/io/model/model_file.hpp"
 #include "runtime/error.hpp"
 
 #include <fmt/format.h>

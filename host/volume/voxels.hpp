@@ -52,6 +52,8 @@ struct Voxels {
     std::string modality;           ///< "CT", "MR", ... where the file says so, else empty
     std::size_t repaired = 0;       ///< NaN and infinite voxels that were replaced
     std::vector<std::string> notes; ///< what the reader wants the user to know (a warning a line)
+    /// How the reader understood what a file may say in several ways ("spacing z from OME-XML"): shown by `clvr info`, no warnings.
+    std::vector<std::string> decisions;
 
     std::size_t count() const { return static_cast<std::size_t>(dims[0]) * dims[1] * dims[2]; }
     template <class T>

@@ -1,5 +1,5 @@
 // `clvr render` as a user sees it: pictures, scenes, sequences, interruption, bad input.
-#include "host/io/frame_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/runtime/scoped.hpp"
 

@@ -1,6 +1,6 @@
 // `clvr pairs`, `train`, `denoise` and `compare` as a user sees them.
-#include "host/io/frame_file.hpp"
-#include "host/io/model_file.hpp"
+#include "host/io/model/model_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/runtime/scoped.hpp"
 

@@ -1,6 +1,6 @@
 // The golden vectors (tests/golden) and their tolerances.
 #pragma once
-#include "host/io/safetensors.hpp"
+#include "host/io/model/safetensors.hpp"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

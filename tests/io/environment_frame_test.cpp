@@ -1,5 +1,5 @@
 // Environment images: Radiance and OpenEXR, whole and broken.
-#include "host/io/frame_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "tests/io/frames.hpp"
 
 #include <gmock/gmock.h>

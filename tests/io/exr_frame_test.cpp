@@ -1,5 +1,5 @@
 // Frames to OpenEXR and back, and files that are none.
-#include "host/io/frame_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "tests/io/frames.hpp"
 
 #include <ImfChannelList.h>

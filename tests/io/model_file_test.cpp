@@ -1,6 +1,6 @@
 // Model files: as written, by hand, and broken.
 #include "host/io/atomic_file.hpp"
-#include "host/io/model_file.hpp"
+#include "host/io/model/model_file.hpp"
 #include "runtime/error.hpp"
 #include "tests/runtime/scoped.hpp"
 

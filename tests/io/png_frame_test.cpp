@@ -1,5 +1,5 @@
 // Pictures as PNG: tone maps, alpha, and the check of the output's place.
-#include "host/io/frame_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "tests/io/frames.hpp"
 
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // Scene files: every field there and back, and what is refused.
 #include "host/io/atomic_file.hpp"
-#include "host/io/scene_file.hpp"
+#include "host/io/scene/scene_file.hpp"
 #include "tests/io/frames.hpp"
 
 #include <gmock/gmock.h>
@@ -21,13 +21,16 @@ Scene unusual() {
     Scene s;
     s.volume = "data/a \"b\" \xc3\xbc.nii.gz";
     s.volume_sha256 = std::string(64, 'a');
-    s.frame = 3;
-    s.series = "1.2.840.113619.2";
-    s.allow_gaps = true;
-    s.raw.dims = Int3{7, 8, 9};
-    s.raw.type = "uint16";
-    s.raw.spacing = Double3{0.1, 1.0 / 3, 2};
-    s.raw.endian = "big";
+    s.reading.frame = 3;
+    s.reading.channel = 0;
+    s.reading.array = "density \"2\"";
+    s.reading.recursive = true;
+    s.reading.series = "1.2.840.113619.2";
+    s.reading.allow_gaps = true;
+    s.reading.dims = Int3{7, 8, 9};
+    s.reading.type = "uint16";
+    s.reading.spacing = Double3{0.1, 1.0 / 3, 2};
+    s.reading.endian = "big";
     TransferFunction tf;
     tf.name = "mine";
     tf.normalized = true;

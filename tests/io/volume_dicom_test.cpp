@@ -1,5 +1,5 @@
 // DICOM: which slices make a volume, in which order, and what is refused.
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <gmock/gmock.h>

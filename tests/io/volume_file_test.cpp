@@ -1,5 +1,5 @@
 // What is a volume at all, by content and by name; the hash.
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
 // Every container that clvr reads, written from one sample: what the suites over all formats run on.
 #pragma once
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <ostream>

@@ -1,5 +1,5 @@
 // NIfTI: types, scale, orientation, frames, and what is refused.
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // RAW: described by name, sidecar or options.
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // NRRD, MetaImage and VTK: what their headers can say, and what is refused.
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // TIFF stacks: files of pages, folders of slices, ImageJ's calibration.
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <gmock/gmock.h>
@@ -85,7 +85,7 @@ TEST(VolumeTiff, FolderTakesTheLargestStackInOrderOfItsNumbers) {
     Voxels v = read_volume(folder / "s");
     EXPECT_EQ(v.dims, s.dims);
     EXPECT_TRUE(std::equal(s.voxels.begin(), s.voxels.end(), v.data<std::int16_t>()));
-    EXPECT_THAT(v.notes, Contains(HasSubstr("1 of 13 TIFF files")));
+    EXPECT_THAT(v.notes, Contains(HasSubstr("1 of 13 files")));
     std::filesystem::remove(folder / "s/ct_5_a.tif");
     EXPECT_THAT(read_volume(folder / "s").notes, Contains(HasSubstr("numbered 1 to 12 but there are only 11")));
     write(folder / "s/ct_6_a.tif", tiff({pages[0], pages[1]}));

@@ -1,5 +1,5 @@
 // Volumes written as NIfTI and read again.
-#include "host/io/volume_file.hpp"
+#include "host/io/volume/volume_file.hpp"
 #include "runtime/error.hpp"
 #include "tests/runtime/scoped.hpp"
 

@@ -44,7 +44,7 @@ TEST(SceneTest, WhatAnOptionSetsIsNamedByIt) {
     EXPECT_THAT(refusal([](Scene& s) { s.spp = -1; }), HasSubstr("--spp"));
     EXPECT_THAT(refusal([](Scene& s) { s.feature_samples = 2; }), HasSubstr("--feature-samples: is 2; expected 1 or 4"));
     EXPECT_THAT(refusal([](Scene& s) { s.bounces = -1; }), HasSubstr("--bounces"));
-    EXPECT_THAT(refusal([](Scene& s) { s.frame = -1; }), HasSubstr("--frame"));
+    EXPECT_THAT(refusal([](Scene& s) { s.reading.frame = -1; }), HasSubstr("--frame"));
     EXPECT_THAT(refusal([](Scene& s) { s.exposure = 100; }), HasSubstr("--exposure"));
     EXPECT_THAT(refusal([](Scene& s) { s.tonemap = "Filmic"; }), HasSubstr("--tonemap: is 'Filmic'; expected one of filmic"));
     for (double g : {-1.0, 1.0, nan_value}) EXPECT_THAT(refusal([=](Scene& s) { s.phase_g = g; }), HasSubstr("--phase-g"));

@@ -1,7 +1,7 @@
 // Training: gradients by finite differences, the same bits however it is cut, interruption, overfitting, what it refuses.
 #include "host/io/atomic_file.hpp"
-#include "host/io/frame_file.hpp"
-#include "host/io/model_file.hpp"
+#include "host/io/model/model_file.hpp"
+#include "host/io/picture/frame_file.hpp"
 #include "host/train/checkpoint.hpp"
 #include "host/train/pairs.hpp"
 #include "host/train/trainer.hpp"

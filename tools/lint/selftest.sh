@@ -54,7 +54,7 @@ expect refuses format runtime/a.cpp 'clang-format-violations' <<<'int  f( int x 
 expect refuses format runtime/a.txt 'no C++ file' <<<'int  f( int x ){return x;}'
 
 expect accepts layers host/io/a.hpp <<<'#include "host/frame/frame.hpp"'
-for case in 'runtime/a.cpp host/volume/voxels.hpp' 'host/volume/a.cpp host/frame/frame.hpp' 'host/render/a.hpp host/io/frame_file.hpp' \
+for case in 'runtime/a.cpp host/volume/voxels.hpp' 'host/volume/a.cpp host/frame/frame.hpp' 'host/render/a.hpp host/io/picture/frame_file.hpp' \
     'host/io/a.cpp host/cli/commands.hpp' 'host/cli/a.cpp tests/reference/a.hpp' 'host/cli/a.cpp frame.hpp' 'kernels/lib/a.clh render/a.cl'; do
     expect refuses layers "${case% *}" "${case#* }" <<<"#include \"${case#* }\""
 done

@@ -1,0 +1,24 @@
+// Models to and from safetensors files (DESIGN.md "Model file").
+#pragma once
+#include "host/denoise/model.hpp"
+#include "host/io/model/safetensors.hpp"
+
+#include <string>
+
+namespace clvr {
+
+/// Reads a model; "default" (where there is no such file) is the one inside the binary. A file without metadata, with 10 input channels,
+/// means the reference's channels and no preprocessing. Throws Error{input}: what is wrong with the header, a tensor, a shape or a weight,
+/// and what was expected; Error{usage} when the binary has no default model.
+Model read_model(const std::string& path);
+/// Writes the four tensors in order, the settings and the notes as metadata; atomically.
+void write_model(const Model& model, const std::string& path);
+
+/// The settings alone, as the metadata has them: channels, levels, switches.
+std::string model_settings_json(const Model& model);
+
+/// The same within a larger file (a checkpoint). `where` names it in errors.
+Model model_of(const TensorFile& file, const std::string& where);
+TensorFile tensors_of(const Model& model);
+
+} // namespace clvr

@@ -1,0 +1,22 @@
+// Which format a volume file has.
+#pragma once
+#include "host/volume/volume_read_options.hpp"
+
+#include <string>
+
+namespace clvr {
+
+enum class VolumeFormat { unknown, nifti, nrrd, metaimage, dicom, tiff, vtk, raw };
+
+/// By the first bytes of a file (1024 are enough): `unknown` where they are silent.
+VolumeFormat format_of_head(const std::string& head);
+/// By the ending of a file's name, in any case: `unknown` where it is none of clvr's.
+VolumeFormat format_of_name(const std::string& name);
+/// Of a file: the bytes decide; the name only where they are silent. --dims makes it RAW. Throws Error{input} for what is no volume.
+VolumeFormat format_of_file(const std::string& path, const VolumeReadOptions& options);
+
+/// Whether the text ends, or starts, so.
+bool ends_with(const std::string& s, const std::string& end);
+bool starts_with(const std::string& s, const std::string& start);
+
+} // namespace clvr
