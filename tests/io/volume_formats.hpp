@@ -1,6 +1,7 @@
 // Every container that clvr reads, written from one sample: what the suites over all formats run on.
 #pragma once
 #include "host/io/volume/volume_file.hpp"
+#include "tests/io/text_header_writers.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <ostream>
@@ -32,10 +33,14 @@ inline Written two(const std::string& header_path, const std::string& header, co
     write(data_path, data);
     return {header_path, data_path};
 }
-inline std::string text_of(const Sample& s) {
-    std::string text;
-    for (const auto v : s.voxels) text += fmt::format("{}\n", v);
-    return text;
+inline std::string text_of(const Sample& s) { return text_of(s.voxels); }
+/// One .vti; `spare` of its format must be that of its mode.
+template <VtiFields::Mode mode, VtiFields::Compressor compressor, bool big>
+Written vti_file(const Folder& to, const Sample& s) {
+    VtiFields f;
+    f.mode = mode, f.compressor = compressor, f.big = f.wide_header = big;
+    if (big) f.first = {2, -1, 5};
+    return single(to / "a.vti", vti(s, f));
 }
 inline Written dicom_folder(const Folder& to, const Sample& s, bool rle) {
     for (int k = 0; k < s.dims[2]; ++k) {
@@ -57,6 +62,7 @@ inline const std::vector<VolumeFormat>& volume_formats() {
         for (auto& p : pages) p.compression = compression, p.tile = tile;
         return tiff(pages);
     };
+    static const int vti_spare = static_cast<int>(std::string(vti_tail).size()) + 1;
     static const std::vector<VolumeFormat> formats{
         {"nifti", [](const Folder& to, const Sample& s) { return single(to / "a.nii", nifti(s)); }},
         {"nifti_gzip", [](const Folder& to, const Sample& s) { return single(to / "a.nii.gz", deflated(nifti(s))); },
@@ -83,6 +89,28 @@ inline const std::vector<VolumeFormat>& volume_formats() {
          }},
         {"nrrd_text", [](const Folder& to, const Sample& s) { return single(to / "a.nrrd", nrrd_header(s, "ascii") + "\n" + text_of(s)); },
          VolumeFormat::geometry, false, 8},
+        {"nrrd_bzip2",
+         [](const Folder& to, const Sample& s) { return single(to / "a.nrrd", nrrd_header(s, "bzip2") + "\n" + bzip2ed(little(s))); }},
+        {"nrrd_hex",
+         [](const Folder& to, const Sample& s) { return single(to / "a.nrrd", nrrd_header(s, "hex") + "\n" + hexed(little(s))); },
+         VolumeFormat::geometry, false, 2},
+        {"nrrd_list",
+         [](const Folder& to, const Sample& s) {
+             const auto names = write_slices(to, s, "s{:02}.raw");
+             write(to / "a.nhdr", nrrd_header(s, "raw", "data file: LIST\n" + lines_of(names)));
+             return Written{to / "a.nhdr", to / names.back()};
+         }},
+        {"metaimage_text",
+         [](const Folder& to, const Sample& s) {
+             return single(to / "a.mha", replaced(metaimage_header(s, ""), "BinaryData = True", "BinaryData = False") + text_of(s));
+         },
+         VolumeFormat::geometry, false, 8},
+        {"metaimage_list",
+         [](const Folder& to, const Sample& s) {
+             const auto names = write_slices(to, s, "s{:02}.raw");
+             write(to / "a.mhd", metaimage_header(s, "", "LIST") + lines_of(names));
+             return Written{to / "a.mhd", to / names.front()};
+         }},
         {"metaimage", [](const Folder& to, const Sample& s) { return single(to / "a.mha", metaimage_header(s, "") + little(s)); }},
         {"metaimage_zlib",
          [](const Folder& to, const Sample& s) {
@@ -97,6 +125,14 @@ inline const std::vector<VolumeFormat>& volume_formats() {
          VolumeFormat::spacing_and_origin},
         {"vtk_text", [](const Folder& to, const Sample& s) { return single(to / "a.vtk", vtk_header(s, "ASCII") + text_of(s)); },
          VolumeFormat::spacing_and_origin, false, 8},
+        {"vti_text", vti_file<VtiFields::ascii, VtiFields::none, false>},
+        {"vti_base64", vti_file<VtiFields::binary, VtiFields::none, false>},
+        {"vti_base64_zlib", vti_file<VtiFields::binary, VtiFields::zlib, true>},
+        {"vti_raw", vti_file<VtiFields::appended_raw, VtiFields::none, true>, VolumeFormat::geometry, false, vti_spare},
+        {"vti_raw_lz4", vti_file<VtiFields::appended_raw, VtiFields::lz4, false>, VolumeFormat::geometry, false, vti_spare},
+        {"vti_appended_base64", vti_file<VtiFields::appended_base64, VtiFields::none, false>, VolumeFormat::geometry, false, vti_spare + 2},
+        {"vti_appended_base64_zlib", vti_file<VtiFields::appended_base64, VtiFields::zlib, false>, VolumeFormat::geometry, false,
+         vti_spare + 2},
         {"tiff", [](const Folder& to, const Sample& s) { return single(to / "a.tif", tiff(tiff_pages(s))); }, VolumeFormat::no_geometry},
         {"tiff_deflate", [](const Folder& to, const Sample& s) { return single(to / "a.tif", packed_tiff(s, 8, 0)); },
          VolumeFormat::no_geometry},

@@ -59,7 +59,7 @@ for case in 'runtime/a.cpp host/volume/voxels.hpp' 'host/volume/a.cpp host/frame
     expect refuses layers "${case% *}" "${case#* }" <<<"#include \"${case#* }\""
 done
 expect refuses layers host/cli/a.cpp 'only in runtime' <<<'#include <CL/opencl.hpp>'
-expect refuses layers host/cli/a.cpp 'only in host/io' <<<'#include <itkImageFileReader.h>'
+expect refuses layers host/cli/a.cpp 'only in host/io' <<<'#include <tiffio.h>'
 expect refuses layers host/cli/a.cpp 'steady_clock' <<<'auto now = std::chrono::system_clock::now();'
 expect refuses layers runtime/a.cpp 'knows no volume' <<<'// for every Voxel'
 

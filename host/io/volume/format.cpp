@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* supported =
     "NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), DICOM (a file or a folder), TIFF (.tif or a folder of "
-    "slices), VTK image (.vtk), RAW (name_WxHxD_type.raw, .raw.gz)";
+    "slices), VTK image (.vti, .vtk), RAW (name_WxHxD_type.raw, .raw.gz)";
 
 } // namespace
 
@@ -30,6 +30,16 @@ bool nifti_size(const std::string& head) {
     return std::any_of(sizes.begin(), sizes.end(), [&](const std::string& s) { return starts_with(head, s); });
 }
 
+bool has_text_header(VolumeFormat f) {
+    return f == VolumeFormat::nrrd || f == VolumeFormat::metaimage || f == VolumeFormat::vtk || f == VolumeFormat::vti;
+}
+
+/// An XML file of VTK, of whatever type: its reader names those that are no images.
+bool is_vtk_xml(const std::string& head) {
+    const auto start = head.find_first_not_of("\xef\xbb\xbf \t\r\n");
+    return start != std::string::npos && head[start] == '<' && head.find("<VTKFile") != std::string::npos;
+}
+
 } // namespace
 
 VolumeFormat format_of_head(const std::string& head) {
@@ -40,6 +50,7 @@ VolumeFormat format_of_head(const std::string& head) {
         if (starts_with(head, mark)) return VolumeFormat::tiff;
     if (nifti_size(head) && head.size() >= 12) return VolumeFormat::nifti;
     if (starts_with(head, "ObjectType") || starts_with(head, "NDims") || starts_with(head, "Comment")) return VolumeFormat::metaimage;
+    if (is_vtk_xml(head)) return VolumeFormat::vti;
     return VolumeFormat::unknown;
 }
 
@@ -51,7 +62,7 @@ VolumeFormat format_of_name(const std::string& file_name) {
         {".nrrd", VolumeFormat::nrrd},     {".nhdr", VolumeFormat::nrrd},    {".mha", VolumeFormat::metaimage},
         {".mhd", VolumeFormat::metaimage}, {".dcm", VolumeFormat::dicom},    {".ima", VolumeFormat::dicom},
         {".tif", VolumeFormat::tiff},      {".tiff", VolumeFormat::tiff},    {".vtk", VolumeFormat::vtk},
-        {".raw", VolumeFormat::raw},       {".raw.gz", VolumeFormat::raw}};
+        {".vti", VolumeFormat::vti},       {".raw", VolumeFormat::raw},      {".raw.gz", VolumeFormat::raw}};
     for (const auto& [ending, format] : endings)
         if (ends_with(name, ending)) return format;
     return VolumeFormat::unknown;
@@ -66,10 +77,9 @@ VolumeFormat format_of_file(const std::string& path, const VolumeReadOptions& op
     if (head.empty()) bad_file(path, "the file is empty");
     const VolumeFormat by_head = format_of_head(head);
     if (by_head != VolumeFormat::unknown) return by_head;
-    if (by_name != VolumeFormat::unknown) return by_name;
-    if (starts_with(head, "<?xml") || starts_with(head, "<VTKFile"))
-        bad_file(path, "XML VTK files (.vti) are not read: save as legacy VTK (.vtk), MetaImage or NRRD. Read are: {}", supported);
-    if (is_gzip(path)) {
+    const bool packed = is_gzip(path);
+    if (by_name != VolumeFormat::unknown && !(packed && has_text_header(by_name))) return by_name;
+    if (packed) {
         std::string inside(1024, '\0');
         inside.resize(ByteStream(path, ByteStream::Coding::deflated).read(inside.data(), inside.size()));
         if (format_of_head(inside) == VolumeFormat::nifti) return VolumeFormat::nifti;

@@ -9,6 +9,7 @@ Voxels read_nifti(const std::string& path, const VolumeReadOptions& options);
 Voxels read_nrrd(const std::string& path, const VolumeReadOptions& options);
 Voxels read_metaimage(const std::string& path, const VolumeReadOptions& options);
 Voxels read_vtk(const std::string& path, const VolumeReadOptions& options);
+Voxels read_vti(const std::string& path, const VolumeReadOptions& options);
 Voxels read_raw(const std::string& path, const VolumeReadOptions& options);
 /// One file of several pages, or the slices of a stack in order.
 Voxels read_tiff(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options);

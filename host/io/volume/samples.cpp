@@ -60,6 +60,7 @@ std::optional<SampleType> parse_sample_type(std::string_view name) {
                                                                       {"int8_t", SampleType::i8},
                                                                       {"char", SampleType::i8},
                                                                       {"signed char", SampleType::i8},
+                                                                      {"signed_char", SampleType::i8},
                                                                       {"u16", SampleType::u16},
                                                                       {"uint16", SampleType::u16},
                                                                       {"uint16_t", SampleType::u16},
@@ -92,6 +93,7 @@ std::optional<SampleType> parse_sample_type(std::string_view name) {
                                                                       {"unsigned long long", SampleType::u64},
                                                                       {"unsigned long long int", SampleType::u64},
                                                                       {"unsigned_long", SampleType::u64},
+                                                                      {"unsigned_long_long", SampleType::u64},
                                                                       {"vtktypeuint64", SampleType::u64},
                                                                       {"i64", SampleType::i64},
                                                                       {"int64", SampleType::i64},
@@ -99,6 +101,9 @@ std::optional<SampleType> parse_sample_type(std::string_view name) {
                                                                       {"longlong", SampleType::i64},
                                                                       {"long long", SampleType::i64},
                                                                       {"long long int", SampleType::i64},
+                                                                      {"signed long long", SampleType::i64},
+                                                                      {"signed long long int", SampleType::i64},
+                                                                      {"long_long", SampleType::i64},
                                                                       {"long", SampleType::i64},
                                                                       {"vtktypeint64", SampleType::i64},
                                                                       {"f32", SampleType::f32},
@@ -205,7 +210,7 @@ void store_samples(const void* samples, SampleType type, std::size_t n, Voxels& 
     });
 }
 
-void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v) {
+void read_samples(const ReadBytes& from, SampleType type, bool swapped, Voxels& v) {
     allocate(v);
     const std::size_t size = sample_bytes(type), count = v.count();
     const bool kept = is_kept(type);
@@ -213,12 +218,16 @@ void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v) {
     for (std::size_t first = 0; first < count; first += piece_samples) {
         const std::size_t n = std::min(piece_samples, count - first);
         unsigned char* piece = kept ? v.bytes.data() + first * size : scratch.data();
-        const std::size_t got = from.read(piece, n * size);
+        const std::size_t got = from(piece, n * size);
         if (got < n * size)
             bad_file(v.source, "expected {} bytes of voxels, found {}: the file is truncated", count * size, first * size + got);
         if (swapped) swap_samples(piece, type, n);
         if (!kept) store_samples(piece, type, n, v, first);
     }
+}
+
+void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v) {
+    read_samples([&](void* to, std::size_t bytes) { return from.read(to, bytes); }, type, swapped, v);
 }
 
 void describe(Voxels& v, const std::string& path, const std::string& format, SampleType type) {

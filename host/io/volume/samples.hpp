@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <fmt/format.h>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -57,7 +58,10 @@ void swap_samples(void* samples, SampleType type, std::size_t n);
 /// Stores `n` samples in host byte order as voxels first .. first + n - 1 (v.type is kept_type(type), or f32). `samples` may be
 /// where those voxels are when both have the same size.
 void store_samples(const void* samples, SampleType type, std::size_t n, Voxels& v, std::size_t first);
+/// Where samples come from: stores up to `bytes` bytes at `to`, returns how many; fewer only where the data ends.
+using ReadBytes = std::function<std::size_t(void* to, std::size_t bytes)>;
 /// Allocates v and fills it from the stream, in pieces, so that nothing is held twice. Throws Error{input} when the stream ends too early.
+void read_samples(const ReadBytes& from, SampleType type, bool swapped, Voxels& v);
 void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v);
 
 /// Sets what all readers set alike: source, format, a note of a widened type.

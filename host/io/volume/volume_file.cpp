@@ -53,7 +53,7 @@ Voxels read_tiff_file(const std::string& path, const VolumeReadOptions& options)
 const std::map<VolumeFormat, Reader> readers{
     {VolumeFormat::nifti, read_nifti}, {VolumeFormat::nrrd, read_nrrd},      {VolumeFormat::metaimage, read_metaimage},
     {VolumeFormat::dicom, read_dicom}, {VolumeFormat::tiff, read_tiff_file}, {VolumeFormat::vtk, read_vtk},
-    {VolumeFormat::raw, read_raw}};
+    {VolumeFormat::vti, read_vti},     {VolumeFormat::raw, read_raw}};
 
 Voxels read_any(const std::string& path, const VolumeReadOptions& options) {
     std::error_code error;
