@@ -77,14 +77,20 @@ void sort_places(std::vector<Place>& places, const Frames& frames) {
     if (!agree()) by_label.swap(places);
 }
 
-/// "EchoTime 4.9, 9.8; ImageType ...": in what the slices of a place differ.
+/// "EchoTime 4.9, 9.8; time": in what the slices of a place differ.
 std::string differences(const Place& place, const Frames& frames) {
     std::map<std::string, std::vector<std::string>> values;
-    for (const std::size_t i : place.slices)
-        for (const auto& [name, value] : frames[i].labels) {
-            auto& known = values[name];
-            if (std::find(known.begin(), known.end(), value) == known.end()) known.push_back(value);
-        }
+    const auto keep = [&](const std::string& name, const std::string& value) {
+        auto& known = values[name];
+        if (std::find(known.begin(), known.end(), value) == known.end()) known.push_back(value);
+    };
+    std::set<std::pair<double, double>> times;
+    for (const std::size_t i : place.slices) {
+        const DicomFrame& f = frames[i];
+        for (const auto& [name, value] : f.labels) keep(name, value);
+        keep("StackID", f.stack);
+        times.emplace(f.image->acquisition, f.time);
+    }
     std::string text;
     constexpr std::size_t most = 8;
     for (const auto& [name, known] : values) {
@@ -93,7 +99,8 @@ std::string differences(const Place& place, const Frames& frames) {
         for (std::size_t i = 0; i < std::min(known.size(), most); ++i) text += (i == 0 ? " " : ", ") + known[i];
         if (known.size() > most) text += ", ...";
     }
-    return text.empty() ? "times, echoes" : text;
+    if (times.size() > 1) text += text.empty() ? "time" : "; time";
+    return text.empty() ? "time or echo" : text;
 }
 
 /// What makes slices one set: all but their number.
@@ -134,7 +141,7 @@ std::vector<std::size_t> choose_frame(std::vector<Place>& places, const Frames& 
     if (regular()) a.times = places.front().slices.size();
     check_frame(frame, static_cast<std::int64_t>(a.times), where);
     if (a.times > 1)
-        a.notes.push_back(fmt::format("every slice is there {} times ({}): frame {} is shown, --frame chooses", a.times,
+        a.notes.push_back(fmt::format("every slice is there {} times (differing in {}): frame {} is shown, --frame chooses", a.times,
                                       differences(places.front(), frames), frame));
     std::vector<std::size_t> chosen;
     for (const Place& p : places) chosen.push_back(p.slices[regular() ? static_cast<std::size_t>(frame) : 0]);

@@ -94,6 +94,8 @@ std::vector<double> DicomElements::decimals(DicomTag tag, const char* name, cons
 
 std::optional<double> DicomElements::decimal(DicomTag tag, const char* name, const std::string& path) const {
     const auto numbers = decimals(tag, name, path);
+    if (numbers.size() > 1)
+        throw DicomSliceError(ErrorKind::input, fmt::format("{} is \"{:.60}\": expected one number", name, text(tag)), path);
     return numbers.empty() ? std::nullopt : std::optional(numbers.front());
 }
 

@@ -39,7 +39,7 @@ struct DicomElements {
     std::optional<double> real(DicomTag tag) const;
     /// Decimal strings (DS, IS); empty where the element is absent or empty. Throws DicomSliceError naming `name` where one is no number.
     std::vector<double> decimals(DicomTag tag, const char* name, const std::string& path) const;
-    /// The first of them.
+    /// One of them; throws where there are several, too.
     std::optional<double> decimal(DicomTag tag, const char* name, const std::string& path) const;
     /// The first whole number of a text (IS) that decides nothing but an order; `fallback` where there is none.
     double count(DicomTag tag, double fallback) const;

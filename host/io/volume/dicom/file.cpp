@@ -38,7 +38,8 @@ std::uint32_t kept_bytes(DicomTag tag) {
     case dicom_tag::extended_offsets:
         return 1u << 24;
     case dicom_tag::dose_scaling:
-    case dicom_tag::frame_pointer:
+    case dicom_tag::real_world_intercept:
+    case dicom_tag::real_world_slope:
         return short_value;
     default:
         return (tag >> 16) <= last_short_group ? short_value : 0;
@@ -51,7 +52,7 @@ bool is_kept_sequence(DicomTag tag) {
     static const std::set<DicomTag> kept{directory_records, mr_echo,        mr_diffusion,   cardiac_synchronization, mr_frame_type,
                                          ct_frame_type,     pet_frame_type, frame_content,  plane_position,          plane_orientation,
                                          temporal_sequence, modality_lut,   pixel_measures, value_transformation,    detectors,
-                                         shared_groups,     frame_groups};
+                                         real_world_map,    shared_groups,  frame_groups};
     return kept.count(tag) != 0;
 }
 

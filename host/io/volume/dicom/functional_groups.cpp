@@ -50,6 +50,17 @@ void read_labels(const FrameGroups& groups, DicomFrame& frame) {
     frame.stack = groups.with(frame_content, stack_id).text(stack_id);
 }
 
+/// Slope and intercept, where the groups have them. A parametric map has its scale beside: its rescale is 1 and 0.
+void read_scale(const FrameGroups& groups, bool is_map, DicomFrame& frame) {
+    const std::string& path = frame.image->path;
+    const auto set = [](double& to, std::optional<double> value) { to = value.value_or(to); };
+    set(frame.slope, groups.with(value_transformation, rescale_slope).decimal(rescale_slope, "RescaleSlope", path));
+    set(frame.intercept, groups.with(value_transformation, rescale_intercept).decimal(rescale_intercept, "RescaleIntercept", path));
+    if (!is_map) return;
+    set(frame.slope, groups.with(real_world_map, real_world_slope).real(real_world_slope));
+    set(frame.intercept, groups.with(real_world_map, real_world_intercept).real(real_world_intercept));
+}
+
 } // namespace
 
 std::vector<DicomFrame> functional_group_frames(const DicomElements& data, const DicomFrame& common) {
@@ -58,6 +69,7 @@ std::vector<DicomFrame> functional_group_frames(const DicomElements& data, const
     const std::size_t items = own == data.sequences.end() ? 0 : own->second.size();
     if (items != image.frames && !(items == 0 && image.frames == 1))
         bad_file(image.path, "PerFrameFunctionalGroupsSequence has {} items for {} frames", items, image.frames);
+    const bool is_map = data.text(sop_class) == "1.2.840.10008.5.1.4.1.1.30";
     std::vector<DicomFrame> frames;
     for (std::size_t f = 0; f < image.frames; ++f) {
         const FrameGroups groups(items > 0 ? &own->second[f] : nullptr, data.item(shared_groups), data);
@@ -65,11 +77,7 @@ std::vector<DicomFrame> functional_group_frames(const DicomElements& data, const
         frame.number = f;
         const DicomElements& measures = groups.with(pixel_measures, pixel_spacing);
         frame.place = place_of(groups.with(plane_position, position), groups.with(plane_orientation, orientation), measures, image.path);
-        const auto slope = groups.with(value_transformation, rescale_slope).decimal(rescale_slope, "RescaleSlope", image.path);
-        const auto intercept =
-            groups.with(value_transformation, rescale_intercept).decimal(rescale_intercept, "RescaleIntercept", image.path);
-        frame.slope = slope.value_or(common.slope);
-        frame.intercept = intercept.value_or(common.intercept);
+        read_scale(groups, is_map, frame);
         read_labels(groups, frame);
         frames.push_back(std::move(frame));
     }

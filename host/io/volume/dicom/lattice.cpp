@@ -41,20 +41,37 @@ std::vector<double> residuals(const std::vector<double>& along, const std::vecto
     return off;
 }
 
+/// The regular place of each given one, each gap counted by itself.
+std::vector<std::size_t> count_steps(const std::vector<double>& along, double usual) {
+    constexpr double most_steps = 1e9;
+    std::vector<std::size_t> index{0};
+    for (std::size_t k = 1; k < along.size(); ++k)
+        index.push_back(index.back() + static_cast<std::size_t>(std::lround(std::min((along[k] - along[k - 1]) / usual, most_steps))));
+    return index;
+}
+
+/// Whether rounding alone explains that single distances look like gaps, as when 1.25 mm is written without decimals: 0, 1, 3, 4, 5.
+bool rounding_explains(const std::vector<double>& along, const std::vector<std::size_t>& counted, double rounding) {
+    constexpr std::size_t least_places = 8, least_gaps = 2;
+    if (along.size() < least_places || counted.back() < along.size() - 1 + least_gaps) return false;
+    std::vector<std::size_t> plain(along.size());
+    std::iota(plain.begin(), plain.end(), std::size_t{0});
+    const std::vector<double> off = residuals(along, plain);
+    return *std::max_element(off.begin(), off.end()) <= 0.6 * rounding;
+}
+
 } // namespace
 
 SliceLattice lattice_of(const std::vector<double>& along, double rounding) {
     SliceLattice l;
-    constexpr double most_steps = 1e9;
-    const double usual = usual_step(along, rounding);
-    l.index = {0};
-    for (std::size_t k = 1; k < along.size(); ++k)
-        l.index.push_back(l.index.back() + static_cast<std::size_t>(std::lround(std::min((along[k] - along[k - 1]) / usual, most_steps))));
+    l.index = count_steps(along, usual_step(along, rounding));
+    const bool explained = rounding_explains(along, l.index, rounding);
+    if (explained) std::iota(l.index.begin(), l.index.end(), std::size_t{0});
     const double span = along.back() - along.front();
     l.count = l.index.back() + 1;
     l.step = span / static_cast<double>(l.index.back());
     // Rounding moves a place by half of it, and the ends of the line a little.
-    const double allowed = std::max(tolerance * l.step, std::min(0.75 * rounding, 0.3 * l.step));
+    const double allowed = explained ? rounding : std::max(tolerance * l.step, std::min(0.75 * rounding, 0.3 * l.step));
     const std::vector<double> fitted = residuals(along, l.index);
     for (std::size_t k = 0; k < along.size(); ++k) {
         const double plain = std::abs(along[k] - along.front() - l.step * static_cast<double>(l.index[k]));
