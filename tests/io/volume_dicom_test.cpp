@@ -204,7 +204,12 @@ TEST_F(VolumeDicom, WhatIsNoSliceIsNotedAndAloneRefused) {
     alone([](DicomFields& f) { f.photometric = "RGB", f.samples = 3; }, {"colours", "RGB"});
     alone([](DicomFields& f) { f.photometric = "PALETTE COLOR"; }, {"PALETTE"});
     alone([](DicomFields& f) { f.modality = "SEG"; }, {"label map"});
-    alone([](DicomFields& f) { f.frames = "12"; }, {"12 frames", "dcm2niix"});
+    alone(
+        [](DicomFields& f) {
+            f.frames = "2";
+            f.pixels += f.pixels;
+        },
+        {"2 frames", "where each of them lies"});
     alone([](DicomFields& f) { f.position.clear(); }, {"ImagePositionPatient"});
     alone([](DicomFields& f) { f.orientation = "1\\0\\0\\1\\0\\0"; }, {"ImageOrientationPatient"});
     alone([](DicomFields& f) { f.orientation = "1\\0\\0\\0\\nan\\0"; }, {"ImageOrientationPatient"});

@@ -1,5 +1,6 @@
 #include "host/io/volume/format.hpp"
 #include "host/io/byte_stream.hpp"
+#include "host/io/volume/dicom/start.hpp"
 #include "host/io/volume/header_text.hpp"
 #include "host/io/volume/samples.hpp"
 
@@ -51,6 +52,7 @@ VolumeFormat format_of_head(const std::string& head) {
     if (nifti_size(head) && head.size() >= 12) return VolumeFormat::nifti;
     if (starts_with(head, "ObjectType") || starts_with(head, "NDims") || starts_with(head, "Comment")) return VolumeFormat::metaimage;
     if (is_vtk_xml(head)) return VolumeFormat::vti;
+    if (dicom_start(head)) return VolumeFormat::dicom; // without preamble
     return VolumeFormat::unknown;
 }
 
@@ -72,8 +74,9 @@ VolumeFormat format_of_file(const std::string& path, const VolumeReadOptions& op
     const std::string name = lower_case(std::filesystem::path(path).filename().string());
     const VolumeFormat by_name = format_of_name(name);
     if (by_name == VolumeFormat::raw || options.dims) return VolumeFormat::raw;
-    if (ends_with(name, ".img") || ends_with(name, ".img.gz")) return VolumeFormat::nifti; // voxels alone: the header is beside
     const std::string head = read_head(path, 1024);
+    if (format_of_head(head) == VolumeFormat::dicom) return VolumeFormat::dicom;
+    if (ends_with(name, ".img") || ends_with(name, ".img.gz")) return VolumeFormat::nifti; // voxels alone: the header is beside
     if (head.empty()) bad_file(path, "the file is empty");
     const VolumeFormat by_head = format_of_head(head);
     if (by_head != VolumeFormat::unknown) return by_head;
