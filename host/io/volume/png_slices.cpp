@@ -43,6 +43,10 @@ public:
         if (!read_header(png_, info_, file_.get())) fail_and_free("is no sound PNG (" + complaint_ + ")");
         width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
         bits_ = png_get_bit_depth(png_, info_), colour_ = png_get_color_type(png_, info_);
+        constexpr std::uint64_t greatest_ratio = 1032; // of deflate
+        if ((std::uint64_t{width} * png_get_channels(png_, info_) * bits_ + 7) / 8 * height >
+            std::filesystem::file_size(path) * greatest_ratio)
+            fail_and_free(fmt::format("is too short for {} x {} pixels: it is truncated or damaged", width, height));
         type = bits_ == 16 ? SampleType::u16 : SampleType::u8;
         form = fmt::format("{} x {} {} bits", width, height, bits_);
         if (colour_ == PNG_COLOR_TYPE_PALETTE) {
@@ -59,9 +63,6 @@ public:
 
     void decode(unsigned char* to) override {
         const std::size_t channels = png_get_channels(png_, info_), size = bits_ == 16 ? 2 : 1;
-        constexpr std::uint64_t greatest_ratio = 1032; // of deflate
-        const std::uint64_t stored = (std::uint64_t{width} * channels * bits_ + 7) / 8 * height;
-        check_capacity(stored, std::filesystem::file_size(path_) * greatest_ratio, path_);
         if (bits_ < 8) png_set_packing(png_);
         if (bits_ == 16 && must_swap(true)) png_set_swap(png_);
         png_set_interlace_handling(png_);

@@ -21,6 +21,10 @@ void stack_slices(Voxels& v, const std::string& path, const std::string& format,
             form = image->form;
             describe(v, path, format, image->type);
             v.dims = check_dims({image->width, image->height, static_cast<std::int64_t>(files.size())}, 1, image->type, path).dims;
+            std::uint64_t stored = 0;
+            for (const std::string& f : files) stored += std::filesystem::file_size(f);
+            constexpr std::uint64_t greatest_ratio = 40000; // no codec of pictures packs tighter
+            check_capacity(static_cast<std::uint64_t>(v.count()) * sample_bytes(image->type), stored * greatest_ratio, path);
             allocate(v);
         } else if (image->form != form) {
             bad_file(files[slice], "it is {}, {} is {}: all slices must be alike", image->form,

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <tiffio.h>
 
 namespace clvr {
 

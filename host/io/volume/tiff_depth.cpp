@@ -2,6 +2,7 @@
 #include "host/io/volume/tiff_samples.hpp"
 
 #include <algorithm>
+#include <tiffio.h>
 
 namespace clvr {
 

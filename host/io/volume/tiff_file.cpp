@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <sys/types.h>
+#include <tiffio.h>
 
 namespace clvr {
 
@@ -52,7 +53,17 @@ void TiffFile::fail() const {
     bad_file(path_, "it does not decode ({}): the file is truncated or damaged", complaint_.empty() ? "no reason given" : complaint_);
 }
 
-std::string TiffFile::text(ttag_t tag) const {
+bool TiffFile::is_big_endian() const { return TIFFIsBigEndian(get()) != 0; }
+
+template <class T>
+T TiffFile::field(std::uint32_t tag, T fallback) const {
+    T value = fallback;
+    return TIFFGetFieldDefaulted(get(), tag, &value) ? value : fallback;
+}
+template std::uint16_t TiffFile::field(std::uint32_t tag, std::uint16_t fallback) const;
+template std::uint32_t TiffFile::field(std::uint32_t tag, std::uint32_t fallback) const;
+
+std::string TiffFile::text(std::uint32_t tag) const {
     const char* text = nullptr;
     return TIFFGetField(get(), tag, &text) && text ? text : "";
 }

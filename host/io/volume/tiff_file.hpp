@@ -8,8 +8,9 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <tiffio.h>
 #include <vector>
+
+struct tiff; // libtiff's TIFF
 
 namespace clvr {
 
@@ -33,19 +34,16 @@ public:
     TiffFile(const TiffFile&) = delete;
     TiffFile& operator=(const TiffFile&) = delete;
 
-    TIFF* get() const { return handle_.get(); }
+    tiff* get() const { return handle_.get(); }
     const std::string& path() const { return path_; }
     std::uint64_t size() const { return size_; }
-    bool is_big_endian() const { return TIFFIsBigEndian(get()) != 0; }
+    bool is_big_endian() const;
 
-    /// A value of the current page, or `fallback`.
+    /// A value of the current page, or `fallback`: tags of 16 or of 32 bits.
     template <class T>
-    T field(ttag_t tag, T fallback) const {
-        T value = fallback;
-        return TIFFGetFieldDefaulted(get(), tag, &value) ? value : fallback;
-    }
+    T field(std::uint32_t tag, T fallback) const;
     /// A text of the current page; empty where there is none.
-    std::string text(ttag_t tag) const;
+    std::string text(std::uint32_t tag) const;
     /// An entry of the current page's directory.
     std::optional<TiffEntry> entry(std::uint16_t tag) const;
     /// `count` bytes from `offset`. Throws Error{input} where the file is shorter.
@@ -64,15 +62,15 @@ public:
     void check_counts() const;
 
 private:
-    static int complain(TIFF*, void* self, const char*, const char* format, va_list arguments);
-    static int warn(TIFF* tiff, void* self, const char* module, const char* format, va_list arguments);
+    static int complain(tiff*, void* self, const char*, const char* format, va_list arguments);
+    static int warn(tiff*, void* self, const char*, const char* format, va_list arguments);
     void check_link() const;
 
     std::string path_, complaint_;
     mutable std::string guess_; ///< libtiff's warning of wrong byte counts in the current page
     std::uint64_t size_ = 0;
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> raw_;
-    std::unique_ptr<TIFF, void (*)(TIFF*)> handle_;
+    std::unique_ptr<tiff, void (*)(tiff*)> handle_;
 };
 
 } // namespace clvr

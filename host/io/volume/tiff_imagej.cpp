@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <tiffio.h>
 
 namespace clvr {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tiffio.h>
 
 namespace clvr {
 

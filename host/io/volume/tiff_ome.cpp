@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <pugixml.hpp>
 #include <set>
+#include <tiffio.h>
 
 namespace clvr {
 

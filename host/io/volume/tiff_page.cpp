@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <tiffio.h>
 #include <tuple>
 
 namespace clvr {

@@ -43,7 +43,7 @@ Voxels read_stack(const std::string& path, const std::map<VolumeFormat, std::vec
     }
     if (is_tiff && pngs != files.end())
         v.notes.push_back(
-            fmt::format("{} PNG file{} beside the TIFF slices left out", pngs->second.size(), pngs->second.size() == 1 ? " is" : "s are"));
+            fmt::format("{} PNG file{} left out beside the TIFF slices", pngs->second.size(), pngs->second.size() == 1 ? " is" : "s are"));
     return v;
 }
 
