@@ -14,8 +14,8 @@ namespace clvr {
 namespace {
 
 constexpr const char* supported =
-    "NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), DICOM (a file or a folder), TIFF (.tif or a folder of "
-    "slices), VTK image (.vti, .vtk), RAW (name_WxHxD_type.raw, .raw.gz)";
+    "NIfTI (.nii, .nii.gz, .hdr/.img), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), DICOM (a file or a folder), TIFF or PNG (a file or a "
+    "folder of slices), VTK image (.vti, .vtk), RAW (name_WxHxD_type.raw, .raw.gz)";
 
 } // namespace
 
@@ -49,6 +49,7 @@ VolumeFormat format_of_head(const std::string& head) {
     if (head.size() >= 132 && head.compare(128, 4, "DICM") == 0) return VolumeFormat::dicom;
     for (const std::string& mark : {std::string("II*\0", 4), std::string("MM\0*", 4), std::string("II+\0", 4), std::string("MM\0+", 4)})
         if (starts_with(head, mark)) return VolumeFormat::tiff;
+    if (starts_with(head, "\x89PNG\r\n\x1a\n")) return VolumeFormat::png;
     if (nifti_size(head) && head.size() >= 12) return VolumeFormat::nifti;
     if (starts_with(head, "ObjectType") || starts_with(head, "NDims") || starts_with(head, "Comment")) return VolumeFormat::metaimage;
     if (is_vtk_xml(head)) return VolumeFormat::vti;
@@ -63,8 +64,9 @@ VolumeFormat format_of_name(const std::string& file_name) {
         {".hdr.gz", VolumeFormat::nifti},  {".img", VolumeFormat::nifti},    {".img.gz", VolumeFormat::nifti},
         {".nrrd", VolumeFormat::nrrd},     {".nhdr", VolumeFormat::nrrd},    {".mha", VolumeFormat::metaimage},
         {".mhd", VolumeFormat::metaimage}, {".dcm", VolumeFormat::dicom},    {".ima", VolumeFormat::dicom},
-        {".tif", VolumeFormat::tiff},      {".tiff", VolumeFormat::tiff},    {".vtk", VolumeFormat::vtk},
-        {".vti", VolumeFormat::vti},       {".raw", VolumeFormat::raw},      {".raw.gz", VolumeFormat::raw}};
+        {".tif", VolumeFormat::tiff},      {".tiff", VolumeFormat::tiff},    {".png", VolumeFormat::png},
+        {".vtk", VolumeFormat::vtk},       {".vti", VolumeFormat::vti},      {".raw", VolumeFormat::raw},
+        {".raw.gz", VolumeFormat::raw}};
     for (const auto& [ending, format] : endings)
         if (ends_with(name, ending)) return format;
     return VolumeFormat::unknown;

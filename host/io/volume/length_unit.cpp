@@ -21,14 +21,17 @@ std::string settled(std::string name) {
 
 std::optional<double> millimetres_of(std::string_view unit) {
     static const std::map<std::string, double, std::less<>> units{
-        {"pm", 1e-9},           {"picometer", 1e-9}, {"angstrom", 1e-7},  {"\xc3\x85", 1e-7}, {"\xc3\xa5", 1e-7}, {"\xc5", 1e-7},
-        {"\xe2\x84\xab", 1e-7}, {"nm", 1e-6},        {"nanometer", 1e-6}, {"um", 1e-3},       {"micron", 1e-3},   {"micrometer", 1e-3},
-        {"micro-meter", 1e-3},  {"\xc2\xb5m", 1e-3}, {"\xce\xbcm", 1e-3}, {"\xb5m", 1e-3},    {"\xc2\xb5", 1e-3}, {"\xce\xbc", 1e-3},
-        {"\xb5", 1e-3},         {"mm", 1},           {"millimeter", 1},   {"cm", 10},         {"centimeter", 10}, {"dm", 100},
-        {"decimeter", 100},     {"m", 1000},         {"meter", 1000},     {"km", 1e6},        {"kilometer", 1e6}, {"in", 25.4},
-        {"inch", 25.4},         {"inche", 25.4},     {"\"", 25.4},        {"mil", 0.0254},    {"thou", 0.0254},   {"ft", 304.8},
-        {"foot", 304.8},        {"feet", 304.8},     {"yd", 914.4},       {"yard", 914.4}};
-    const auto found = units.find(settled(lower_case(trimmed(unit))));
+        {"fm", 1e-12},      {"pm", 1e-9},       {"picometer", 1e-9},  {"angstrom", 1e-7},     {"a", 1e-7},         {"\\u00b5m", 1e-3},
+        {"\xc3\x85", 1e-7}, {"\xc3\xa5", 1e-7}, {"\xc5", 1e-7},       {"\xe2\x84\xab", 1e-7}, {"nm", 1e-6},        {"nanometer", 1e-6},
+        {"um", 1e-3},       {"micron", 1e-3},   {"micrometer", 1e-3}, {"micro-meter", 1e-3},  {"\xc2\xb5m", 1e-3}, {"\xce\xbcm", 1e-3},
+        {"\xb5m", 1e-3},    {"\xc2\xb5", 1e-3}, {"\xce\xbc", 1e-3},   {"\xb5", 1e-3},         {"mm", 1},           {"millimeter", 1},
+        {"cm", 10},         {"centimeter", 10}, {"dm", 100},          {"decimeter", 100},     {"m", 1000},         {"meter", 1000},
+        {"km", 1e6},        {"kilometer", 1e6}, {"in", 25.4},         {"inch", 25.4},         {"inche", 25.4},     {"\"", 25.4},
+        {"mil", 0.0254},    {"thou", 0.0254},   {"ft", 304.8},        {"foot", 304.8},        {"feet", 304.8},     {"yd", 914.4},
+        {"yard", 914.4}};
+    const std::string_view symbol = trimmed(unit);
+    if (symbol == "Mm" || symbol == "Pm") return symbol == "Mm" ? 1e9 : 1e18; // the prefixes whose case tells them from milli and pico
+    const auto found = units.find(settled(lower_case(symbol)));
     return found == units.end() ? std::nullopt : std::optional(found->second);
 }
 

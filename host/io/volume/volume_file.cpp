@@ -5,6 +5,7 @@
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
 #include "host/io/volume/slices.hpp"
+#include "host/io/volume/tiff_ome.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -19,28 +20,49 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A DICOM series where any file is DICOM, else a stack of TIFF slices. Where nothing of a volume lies on top, the folders inside are
-/// searched by themselves.
+/// The format of a file in a folder: by its bytes, or by its name where they are silent.
+VolumeFormat format_in_folder(const std::string& file) {
+    const VolumeFormat by_head = format_of_head(read_head(file, 1024));
+    return by_head == VolumeFormat::unknown ? format_of_name(file) : by_head;
+}
+
+/// The slices of a stack: TIFF files, else PNG. Files of one OME-TIFF set say themselves how they belong together.
+Voxels read_stack(const std::string& path, const std::map<VolumeFormat, std::vector<std::string>>& files,
+                  const VolumeReadOptions& options) {
+    const auto tiffs = files.find(VolumeFormat::tiff), pngs = files.find(VolumeFormat::png);
+    const bool is_tiff = tiffs != files.end();
+    const std::vector<std::string>& slices = is_tiff ? tiffs->second : pngs->second;
+    Voxels v;
+    if (is_tiff && slices.size() > 1 && is_ome_set(path, slices)) {
+        v = read_tiff(path, {slices.front()}, options);
+    } else {
+        const SliceStack stack = slice_stack(path, slices, options.allow_gaps);
+        v = (is_tiff ? read_tiff : read_png_slices)(path, stack.paths, options);
+        v.notes.insert(v.notes.end(), stack.notes.begin(), stack.notes.end());
+        v.decisions.insert(v.decisions.end(), stack.decisions.begin(), stack.decisions.end());
+    }
+    if (is_tiff && pngs != files.end())
+        v.notes.push_back(
+            fmt::format("{} PNG file{} left out beside the TIFF slices", pngs->second.size(), pngs->second.size() == 1 ? " is" : "s are"));
+    return v;
+}
+
+/// A DICOM series where any file is DICOM, else a stack of slices. Where nothing of a volume lies on top, the folders inside are searched
+/// by themselves.
 Voxels read_folder(const std::string& path, const VolumeReadOptions& options) {
     const FolderFiles all = files_in(path, options.recursive);
-    std::vector<std::string> tiffs;
     const auto read = [&]() -> Voxels {
+        std::map<VolumeFormat, std::vector<std::string>> files;
         for (const std::string& file : all.paths) {
-            const VolumeFormat by_head = format_of_head(read_head(file, 1024)), by_name = format_of_name(file);
-            if (by_head == VolumeFormat::dicom || (by_head == VolumeFormat::unknown && by_name == VolumeFormat::dicom))
-                return read_dicom(path, options);
-            if (by_head == VolumeFormat::tiff || (by_head == VolumeFormat::unknown && by_name == VolumeFormat::tiff)) tiffs.push_back(file);
+            const VolumeFormat format = format_in_folder(file);
+            if (format == VolumeFormat::dicom) return read_dicom(path, options);
+            if (format == VolumeFormat::tiff || format == VolumeFormat::png) files[format].push_back(file);
         }
-        if (tiffs.empty()) {
-            if (options.recursive) bad_file(path, "the folder holds neither DICOM nor TIFF slices, nor do the folders inside it");
-            VolumeReadOptions deep = options;
-            deep.recursive = true;
-            return read_folder(path, deep);
-        }
-        const SliceStack stack = slice_stack(path, tiffs);
-        Voxels v = read_tiff(path, stack.paths, options);
-        v.notes.insert(v.notes.end(), stack.notes.begin(), stack.notes.end());
-        return v;
+        if (!files.empty()) return read_stack(path, files, options);
+        if (options.recursive) bad_file(path, "the folder holds neither DICOM nor TIFF nor PNG slices, nor do the folders inside it");
+        VolumeReadOptions deep = options;
+        deep.recursive = true;
+        return read_folder(path, deep);
     };
     Voxels v = read();
     v.notes.insert(v.notes.end(), all.notes.begin(), all.notes.end());
@@ -49,11 +71,12 @@ Voxels read_folder(const std::string& path, const VolumeReadOptions& options) {
 
 using Reader = Voxels (*)(const std::string& path, const VolumeReadOptions& options);
 Voxels read_tiff_file(const std::string& path, const VolumeReadOptions& options) { return read_tiff(path, {path}, options); }
+Voxels read_png_file(const std::string& path, const VolumeReadOptions& options) { return read_png_slices(path, {path}, options); }
 
 const std::map<VolumeFormat, Reader> readers{
     {VolumeFormat::nifti, read_nifti}, {VolumeFormat::nrrd, read_nrrd},      {VolumeFormat::metaimage, read_metaimage},
-    {VolumeFormat::dicom, read_dicom}, {VolumeFormat::tiff, read_tiff_file}, {VolumeFormat::vtk, read_vtk},
-    {VolumeFormat::vti, read_vti},     {VolumeFormat::raw, read_raw}};
+    {VolumeFormat::dicom, read_dicom}, {VolumeFormat::tiff, read_tiff_file}, {VolumeFormat::png, read_png_file},
+    {VolumeFormat::vtk, read_vtk},     {VolumeFormat::vti, read_vti},        {VolumeFormat::raw, read_raw}};
 
 Voxels read_any(const std::string& path, const VolumeReadOptions& options) {
     std::error_code error;
@@ -75,10 +98,10 @@ Voxels read_volume(const std::string& path, const VolumeReadOptions& options) {
             v.geometry.origin[i] += 0.0;
             for (double& x : v.geometry.direction.row[i]) x += 0.0;
         }
-        const bool raw = v.format == "RAW", tiff = starts_with(v.format, "TIFF");
+        const bool raw = v.format == "RAW", picture = starts_with(v.format, "TIFF") || starts_with(v.format, "PNG");
         if (!raw && (!options.type.empty() || !options.endian.empty()))
             v.notes.push_back("--type and --endian are for RAW files: the file's own were taken");
-        if (!raw && !tiff && options.spacing) v.notes.push_back("--spacing is for RAW and TIFF: the file's own was taken");
+        if (!raw && !picture && options.spacing) v.notes.push_back("--spacing is for RAW, TIFF and PNG: the file's own was taken");
         return v;
     } catch (const fs::filesystem_error& e) {
         throw Error(ErrorKind::input, fmt::format("cannot be read: {}", e.code().message()), path);
