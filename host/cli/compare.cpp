@@ -4,6 +4,7 @@
 #include "host/frame/metrics.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -69,7 +70,7 @@ void compare(const Options& o) {
         else
             all[name] = nullptr; // the PSNR of equal pictures
     }
-    fmt::print("{}\n", all.dump(1));
+    fmt::print("{}", json_text(all));
 }
 
 } // namespace
@@ -77,12 +78,19 @@ void compare(const Options& o) {
 void add_compare_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("compare", "PSNR, SSIM, RMSE, SMAPE, relMSE and FLIP of a picture against its reference");
     auto o = std::make_shared<Options>();
-    c->add_option("A", o->image, "Picture (.exr or .png)")->required();
-    c->add_option("B", o->reference, "Reference (.exr or .png), as large")->required();
-    c->add_option("--tonemap", o->tonemap.curve, "Compare EXR files as filmic, aces or reinhard would show them [none: linear]");
-    c->add_option("--exposure", o->tonemap.exposure, "Exposure before that, in stops [0]");
-    c->add_option("--map", o->map, "Also write error pictures: NAME.flip.png and NAME.difference.png")->type_name("NAME.png");
-    c->add_flag("--json", o->json, "Write JSON");
+    c->add_option("A", o->image, "Picture (.exr or .png)")->type_name("FILE")->required();
+    c->add_option("B", o->reference, "Reference (.exr or .png), of the same size")->type_name("FILE")->required();
+    c->add_flag("--json", o->json, "Print JSON")->group("Output");
+    c->add_option("--map", o->map, "Also write error pictures: of NAME.png, NAME.flip.png and NAME.difference.png")
+        ->type_name("FILE.png")
+        ->group("Output");
+    c->add_option("--tonemap", o->tonemap.curve, "Compare EXR files as this tone curve shows them [none: linear]")
+        ->type_name("none|filmic|aces|reinhard")
+        ->group("Look");
+    c->add_option("--exposure", o->tonemap.exposure, "Exposure before that, in stops [0]")->group("Look");
+    c->footer("Examples:\n"
+              "  clvr compare clean.exr reference.exr\n"
+              "  clvr compare clean.exr reference.exr --tonemap filmic --map error.png\n");
     c->callback([o] { compare(*o); });
 }
 

@@ -120,19 +120,27 @@ void denoise(const Options& o) {
 void add_denoise_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("denoise", "Denoise a rendered frame (EXR) with a trained network");
     auto o = std::make_shared<Options>();
-    c->add_option("IN", o->input, "Noisy frame (.exr) with the channels that the model names")->required();
-    c->add_option("-o,--output", o->outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
-    c->add_option("--model", o->model, "Trained network (.safetensors) [the one inside clvr]")->type_name("FILE");
-    c->add_option("--spp", o->spp, "Samples per pixel of a frame that does not say it (another renderer's)");
+    c->add_option("IN", o->input, "Noisy frame (.exr) with the channels that the model names")->type_name("FILE")->required();
+    c->add_option("-o,--output", o->outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")
+        ->type_name("FILE")
+        ->group("Output");
+    c->add_option("--model", o->model, "Trained network (.safetensors) [the one inside clvr]")->type_name("FILE")->group("Network");
+    c->add_option("--spp", o->spp, "Samples per pixel of a frame that does not say it (another renderer's)")->group("Network");
     c->add_option("--map", o->map,
                   "Take another renderer's channels: albedo=DiffCol, depth.Z=Depth.V, beauty=Combined (may be given again)")
         ->type_name("CLVR'S=THEIRS")
-        ->delimiter(',');
-    c->add_option("--show", o->show, "Also write what the network made, beside the output: guides, weights, levels")
-        ->type_name("WHAT")
-        ->delimiter(',');
-    c->add_option("--exposure", o->tonemap.exposure, "PNG: exposure in stops [0]");
-    c->add_option("--tonemap", o->tonemap.curve, "PNG: filmic, aces, reinhard or none [filmic]");
+        ->delimiter(',')
+        ->group("Network");
+    c->add_option("--show", o->show, "Also write what the network made, beside the output (may be given again)")
+        ->type_name("guides|weights|levels")
+        ->delimiter(',')
+        ->group("Output");
+    c->add_option("--exposure", o->tonemap.exposure, "PNG: exposure in stops [0]")->group("Output");
+    c->add_option("--tonemap", o->tonemap.curve, "PNG: tone curve [filmic]")->type_name("filmic|aces|reinhard|none")->group("Output");
+    c->footer("Examples:\n"
+              "  clvr denoise noisy.exr -o clean.exr\n"
+              "  clvr denoise noisy.exr -o clean.png --model mine.safetensors\n"
+              "  clvr denoise other.exr -o clean.exr --spp 4 --map albedo=DiffCol --map depth.Z=Depth.V\n");
     add_device_options(*c, o->device, "denoise");
     c->callback([o] { denoise(*o); });
 }

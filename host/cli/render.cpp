@@ -1,5 +1,6 @@
 // clvr render: a volume or a scene to pictures.
 #include "host/cli/commands.hpp"
+#include "host/cli/first_word.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/progress_bar.hpp"
@@ -99,10 +100,20 @@ int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene,
     return made.spp;
 }
 
-void render(const RenderOptions& o) {
+/// The picture beside the volume, where there is none yet. Throws Error{usage}.
+std::string new_picture_beside(const RenderOptions& o) {
+    const std::string picture = picture_beside(o.input);
+    std::error_code failed;
+    if (std::filesystem::exists(o.turntable > 0 ? numbered(picture, 0) : picture, failed))
+        throw Error(ErrorKind::usage, "exists; add -o " + picture + " to replace it, or -o with another name", picture);
+    return picture;
+}
+
+void render(RenderOptions o) {
     if (o.list_transfer) return print_presets();
     if (o.input.empty())
         throw Error(ErrorKind::usage, "no volume given: name a file or folder, or demo:head for the built-in one", "clvr render");
+    if (o.outputs.empty() && o.beside) o.outputs.push_back(new_picture_beside(o));
     if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr render");
     if (o.turntable < 0 || o.turntable > 10000)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
@@ -170,6 +181,28 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Render a volume to a picture");
     auto options = std::make_shared<RenderOptions>();
     add_render_options(*command, *options);
+    command->footer("Transfer functions:\n"
+                    "  A JSON file of points over the volume's values; between them, colour and\n"
+                    "  opacity change linearly, outside they stay as at the ends:\n"
+                    "\n"
+                    "  {\"domain\": \"physical\",\n"
+                    "   \"points\": [{\"value\": 150, \"color\": [0.9, 0.5, 0.4], \"opacity\": 0},\n"
+                    "              {\"value\": 300, \"color\": [0.9, 0.8, 0.7], \"opacity\": 0.4}]}\n"
+                    "\n"
+                    "  Values are the file's own, such as Hounsfield units; with \"domain\":\n"
+                    "  \"normalized\", 0 to 1 of the volume's range. Colours are red, green, blue from\n"
+                    "  0 to 1 in sRGB, as colour pickers show them; \"color_space\": \"linear\" beside\n"
+                    "  \"domain\" says that they are linear (albedo 0.5 linear is 0.735 in sRGB).\n"
+                    "World space:\n"
+                    "  --eye, --target and --clip-plane are in LPS millimetres: x grows to the\n"
+                    "  patient's left, y to the back, z to the head. `clvr info` shows where the\n"
+                    "  volume lies.\n"
+                    "Examples:\n"
+                    "  clvr render scan.nii.gz -o scan.png --denoise --spp 4\n"
+                    "  clvr render scans/ -o knee.png --tf ct-bone --azimuth 90 --zoom 1.5\n"
+                    "  clvr render head.mha -o head.exr -o head.png --tf mine.json --time 30\n"
+                    "  clvr render demo:head -o turn.png --turntable 72 --background \"#202020\"\n"
+                    "  clvr render scan.nii.gz -o in.png --eye 0,-400,40 --target 0,0,40\n");
     command->callback([options] { render(*options); });
 }
 

@@ -9,6 +9,7 @@
 #include "host/io/scene/scene_inputs.hpp"
 #include "host/io/volume/volume_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -131,7 +132,7 @@ private:
         for (const Measurement& m : measurements)
             frames.push_back({{"spp", m.spp}, {"baselines", to_json(m.baselines)}, {"mean", to_json(m.evaluation).at("mean")}});
         results["frames"] = frames;
-        write_text(results.dump(1) + "\n", path("results.json"));
+        write_text(json_text(results), path("results.json"));
 
         const std::string volume =
             s_.computed.empty() ? "a file" : fmt::format("computed, {} {}", fmt::join(s_.size.dims, "x"), voxel_type_name(s_.size.type));
