@@ -2,6 +2,7 @@
 #include "host/cli/commands.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/open_volume.hpp"
+#include "host/cli/picture_outputs.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/denoise/denoiser.hpp"
@@ -75,7 +76,8 @@ private:
 
 /// Renders one view and writes it to all outputs. Returns the samples reached.
 int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene, const RenderOptions& o,
-                const std::atomic<bool>& interrupted, const std::vector<std::string>& outputs, const std::string& label) {
+                const std::atomic<bool>& interrupted, PictureOutputs& pictures, const std::vector<std::string>& outputs,
+                const std::string& label) {
     Frame frame;
     {
         ProgressBar bar(label, false);
@@ -95,7 +97,7 @@ int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene,
     made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
     if (denoiser) frame = denoiser->denoise(frame, renderer.devices());
     add_provenance(frame, made, renderer.devices());
-    for (const auto& path : outputs) write_frame(frame, {made.tonemap, made.exposure}, path);
+    pictures.write(frame, {made.tonemap, made.exposure}, outputs);
     return made.spp;
 }
 
@@ -103,7 +105,8 @@ void render(const RenderOptions& o) {
     if (o.list_transfer) return print_presets();
     if (o.input.empty())
         throw Error(ErrorKind::usage, "no volume given: name a file or folder, or demo:head for the built-in one", "clvr render");
-    if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr render");
+    if (o.outputs.empty())
+        throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .jpg, or .exr for all channels)", "clvr render");
     if (o.turntable < 0 || o.turntable > 10000)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
@@ -111,12 +114,14 @@ void render(const RenderOptions& o) {
     if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
     std::optional<Model> model;
     if (o.denoise) model = read_model(o.model);
-    for (const auto& path : o.outputs) check_frame_path(path);
+    PictureOutputs pictures(o.outputs, " (or over --background)");
     if (!o.save_scene.empty()) check_writable(o.save_scene);
     const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr_path);
 
     const std::atomic<bool>& interrupted = catch_interrupts();
-    const EnvironmentTables environment = read_environment(scene);
+    std::vector<std::string> notes;
+    const EnvironmentTables environment = read_environment(scene, &notes);
+    for (const auto& note : notes) spdlog::debug("{}: {}", scene.light.image, note);
     std::vector<Device> devices = open_devices(o.devices);
     const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(scene.volume, scene.reading, device); }));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
@@ -150,7 +155,7 @@ void render(const RenderOptions& o) {
             scene.view = view;
             renderer.aim(scene.camera, scene.view);
         }
-        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, interrupted, outputs,
+        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, interrupted, pictures, outputs,
                               o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
     }
     if (!o.save_scene.empty()) {

@@ -137,7 +137,7 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--shading", o.shading, "auto, phase or gradient [auto]")->group("Light");
     c.add_option("--phase-g", o.phase_g, "Henyey-Greenstein asymmetry, -1 < g < 1 [0]")->group("Light");
     c.add_option("--bounces", o.bounces, "Greatest number of scattering events, 0: unlimited [8]")->group("Light");
-    c.add_option("--environment", o.environment, "sky, a constant radiance, or an image (.hdr, .exr) [sky]")
+    c.add_option("--environment", o.environment, "sky, a constant radiance, or an image (.hdr, .exr, .pfm) [sky]")
         ->type_name("sky|L|FILE")
         ->group("Light");
     c.add_option("--environment-rotation", o.environment_rotation, "Turns the image around the vertical axis [degrees]")->group("Light");
@@ -160,13 +160,14 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
 }
 
 void add_render_options(CLI::App& c, RenderOptions& o) {
-    c.add_option("-o,--output", o.outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
+    c.add_option("-o,--output", o.outputs, "Picture to write: .png, .jpg, or .exr with all channels (may be given twice)")
+        ->type_name("FILE");
     c.add_option("--time", o.seconds, "Stop after about so many seconds, with whole passes of samples")
         ->type_name("SECONDS")
         ->group("Picture");
     c.add_option("--turntable", o.turntable, "Write a numbered sequence of N views around the volume")->type_name("N")->group("Picture");
-    c.add_option("--exposure", o.exposure, "PNG: exposure in stops [0]")->group("Picture");
-    c.add_option("--tonemap", o.tonemap, "PNG: filmic, aces, reinhard or none [filmic]")->group("Picture");
+    c.add_option("--exposure", o.exposure, "PNG and JPEG: exposure in stops [0]")->group("Picture");
+    c.add_option("--tonemap", o.tonemap, "PNG and JPEG: filmic, aces, reinhard or none [filmic]")->group("Picture");
     c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Picture");
     c.add_flag("--denoise", o.denoise, "Denoise with a trained network; an EXR keeps the noisy picture as noisy.*")->group("Picture");
     c.add_option("--model", o.model, "The network of --denoise (.safetensors) [the one inside clvr]")->type_name("FILE")->group("Picture");
