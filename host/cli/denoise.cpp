@@ -120,14 +120,14 @@ Frame input_frame(const Options& o) {
     return frame;
 }
 
-/// The model for the frame: the named one, else the first inside clvr that reads only what the frame has.
-Model model_for(const Options& o, Frame& frame) {
+/// The model for the frame: `named`, else the first inside clvr that reads only what the frame has.
+Model model_for(const Options& o, const std::optional<Model>& named, Frame& frame) {
     const auto choose = [&] {
         std::vector<std::pair<std::string, Model>> candidates;
         for (const auto& name : embedded_model_names()) candidates.emplace_back(name, read_model(name));
         return about(o.input, [&] { return choose_model(candidates, frame); });
     };
-    if (o.model.empty()) {
+    if (!named) {
         const ModelChoice choice = choose();
         if (choice.missing == std::vector<std::string>{"noise"})
             spdlog::info("{}: denoised by the model {}; --spp N, the samples per pixel, lets it take the one that reads more", o.input,
@@ -139,14 +139,13 @@ Model model_for(const Options& o, Frame& frame) {
             spdlog::info("{}: denoised by the model {}", o.input, choice.name);
         return choice.model;
     }
-    const Model model = read_model(o.model);
-    if (const std::string said = add_opacity(frame, model); !said.empty()) spdlog::info("{}: {}", o.input, said);
+    if (const std::string said = add_opacity(frame, *named); !said.empty()) spdlog::info("{}: {}", o.input, said);
     try {
-        ChannelPlan(model, false).check(frame);
+        ChannelPlan(*named, false).check(frame);
     } catch (const Error& e) {
         throw Error(e.kind(), fmt::format("{}; --model {} reads only what it has", e.what(), choose().name), o.input);
     }
-    return model;
+    return *named;
 }
 
 void denoise(const Options& o) {
@@ -156,11 +155,12 @@ void denoise(const Options& o) {
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.spp, largest_spp), "--spp");
     const DenoiserView view = view_of(o.show);
     PictureOutputs pictures(o.outputs);
-    if (!o.model.empty()) read_model(o.model); // refuses before the frame is read
+    std::optional<Model> named;
+    if (!o.model.empty()) named = read_model(o.model);
     const Tonemap tonemap{o.tonemap.value_or(is_display_light(picture_format(o.input)) ? "none" : "filmic"), o.exposure};
     const ToneCurve known(tonemap);
     Frame frame = input_frame(o);
-    const Model model = model_for(o, frame);
+    const Model model = model_for(o, named, frame);
     std::vector<Device> devices = open_devices(o.device);
     std::size_t repaired = 0;
     frame = about(o.input, [&] {

@@ -269,7 +269,7 @@ TEST(ExrPartsTest, TruncatedAndFlippedPartsAreErrorsOrPictures) {
         const Error e = error_of([&] { read_exr(folder / "cut.exr"); });
         EXPECT_EQ(e.kind(), ErrorKind::input) << size << ": " << e.line();
     }
-    for (std::size_t at = 0; at < bytes.size(); ++at)
+    for (std::size_t at = 0; at < bytes.size(); at += 3)
         for (const int bit : {1, 64, 128}) {
             std::string flipped = bytes;
             flipped[at] = static_cast<char>(flipped[at] ^ bit);

@@ -1,6 +1,6 @@
 #include "host/io/atomic_file.hpp"
+#include "host/io/picture/exr_library.hpp"
 #include "host/io/picture/exr_names.hpp"
-#include "host/io/picture/exr_threads.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 
@@ -14,22 +14,13 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
 #include <ImfStringAttribute.h>
-#include <ImfThreading.h>
 #include <ImfVersion.h>
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
-#include <thread>
 
 namespace clvr {
-
-void use_all_cores() {
-    [[maybe_unused]] static const bool once = [] {
-        Imf::setGlobalThreadCount(static_cast<int>(std::thread::hardware_concurrency()));
-        return true;
-    }();
-}
 
 namespace {
 
@@ -221,6 +212,7 @@ void set_windows(const Imf::MultiPartInputFile& file, const std::vector<Part>& p
 
 Frame read_all(const std::string& path) {
     use_all_cores();
+    check_attribute_sizes(path);
     Imf::MultiPartInputFile file(path.c_str());
     Frame frame;
     const std::vector<Part> parts = chosen_parts(file, frame);
@@ -259,6 +251,7 @@ Frame read_exr(const std::string& path) {
     } catch (const std::exception& e) {
         std::string why = e.what();
         std::replace(why.begin(), why.end(), '\n', ' ');
+        if (const std::size_t prefix = why.find("\". "); prefix != why.npos) why.erase(0, prefix + 3); // Cannot read image file "PATH".
         throw Error(ErrorKind::input, fmt::format("is no complete OpenEXR image: {}", why), path);
     }
 }

@@ -1,5 +1,5 @@
 #include "host/io/atomic_file.hpp"
-#include "host/io/picture/exr_threads.hpp"
+#include "host/io/picture/exr_library.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 
