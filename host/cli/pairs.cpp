@@ -10,6 +10,7 @@
 #include "runtime/error.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -77,7 +78,9 @@ void pairs(const Options& o) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     std::vector<Device> devices = open_devices(o.scene.devices);
     const Scene& first = plan.scenes.front();
-    const EnvironmentTables environment = read_environment(first);
+    std::vector<std::string> notes;
+    const EnvironmentTables environment = read_environment(first, &notes);
+    for (const auto& note : notes) spdlog::debug("{}: {}", first.light.image, note);
     const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(first.volume, first.reading, device); }));
     settle(plan, volume);
     begin_pairs_folder(o.folder, plan);

@@ -3,6 +3,7 @@
 #include "host/cli/first_word.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/open_volume.hpp"
+#include "host/cli/picture_outputs.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/denoise/denoiser.hpp"
@@ -76,7 +77,8 @@ private:
 
 /// Renders one view and writes it to all outputs. Returns the samples reached.
 int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene, const RenderOptions& o,
-                const std::atomic<bool>& interrupted, const std::vector<std::string>& outputs, const std::string& label) {
+                const std::atomic<bool>& interrupted, PictureOutputs& pictures, const std::vector<std::string>& outputs,
+                const std::string& label) {
     Frame frame;
     {
         ProgressBar bar(label, false);
@@ -96,7 +98,7 @@ int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene,
     made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
     if (denoiser) frame = denoiser->denoise(frame, renderer.devices());
     add_provenance(frame, made, renderer.devices());
-    for (const auto& path : outputs) write_frame(frame, {made.tonemap, made.exposure}, path);
+    pictures.write(frame, {made.tonemap, made.exposure}, outputs);
     return made.spp;
 }
 
@@ -114,7 +116,8 @@ void render(RenderOptions o) {
     if (o.input.empty())
         throw Error(ErrorKind::usage, "no volume given: name a file or folder, or demo:head for the built-in one", "clvr render");
     if (o.outputs.empty() && o.beside) o.outputs.push_back(new_picture_beside(o));
-    if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr render");
+    if (o.outputs.empty())
+        throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .jpg, or .exr for all channels)", "clvr render");
     if (o.turntable < 0 || o.turntable > 10000)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
@@ -122,12 +125,14 @@ void render(RenderOptions o) {
     if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
     std::optional<Model> model;
     if (o.denoise) model = read_model(o.model);
-    for (const auto& path : o.outputs) check_frame_path(path);
+    PictureOutputs pictures(o.outputs, " (or over --background)");
     if (!o.save_scene.empty()) check_writable(o.save_scene);
     const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr_path);
 
     const std::atomic<bool>& interrupted = catch_interrupts();
-    const EnvironmentTables environment = read_environment(scene);
+    std::vector<std::string> notes;
+    const EnvironmentTables environment = read_environment(scene, &notes);
+    for (const auto& note : notes) spdlog::debug("{}: {}", scene.light.image, note);
     std::vector<Device> devices = open_devices(o.devices);
     const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(scene.volume, scene.reading, device); }));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
@@ -161,7 +166,7 @@ void render(RenderOptions o) {
             scene.view = view;
             renderer.aim(scene.camera, scene.view);
         }
-        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, interrupted, outputs,
+        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, interrupted, pictures, outputs,
                               o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
     }
     if (!o.save_scene.empty()) {

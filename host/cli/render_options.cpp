@@ -152,7 +152,7 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
         ->group("Camera");
     c.add_option("--target", o.target, "What the camera looks at, in LPS millimetres")->type_name("X,Y,Z")->group("Camera");
 
-    c.add_option("--environment", o.environment, "The sky, a constant radiance such as 1, or an image (.hdr, .exr) [sky]")
+    c.add_option("--environment", o.environment, "The sky, a constant radiance such as 1, or an image (.hdr, .exr, .pfm) [sky]")
         ->type_name("sky|L|FILE")
         ->group("Light");
     c.add_option("--environment-rotation", o.environment_rotation, "Degrees by which the image is turned around the vertical axis [0]")
@@ -174,7 +174,7 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
 }
 
 void add_render_options(CLI::App& c, RenderOptions& o) {
-    c.add_option("-o,--output", o.outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")
+    c.add_option("-o,--output", o.outputs, "Picture to write: .png, .jpg, or .exr with all channels (may be given twice)")
         ->type_name("FILE")
         ->group("Output");
     c.add_flag("--beside", o.beside, "Without -o, write a PNG beside the volume, unless there is one")->group("");
@@ -185,8 +185,8 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
         ->type_name("SECONDS")
         ->group("Output");
     c.add_option("--turntable", o.turntable, "Write a numbered sequence of N views around the volume")->type_name("N")->group("Output");
-    c.add_option("--exposure", o.exposure, "PNG: exposure in stops [0]")->group("Output");
-    c.add_option("--tonemap", o.tonemap, "PNG: tone curve [filmic]")->type_name("filmic|aces|reinhard|none")->group("Output");
+    c.add_option("--exposure", o.exposure, "PNG and JPEG: exposure in stops [0]")->group("Output");
+    c.add_option("--tonemap", o.tonemap, "PNG and JPEG: tone curve [filmic]")->type_name("filmic|aces|reinhard|none")->group("Output");
     c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Output");
     c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Output");
     c.add_flag("--list-tf", o.list_transfer, "List the presets of --tf")->group("Look");

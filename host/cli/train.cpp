@@ -21,7 +21,7 @@ struct Options {
     std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant", convolution = "direct";
     TrainerConfig trainer;
     int hidden = 20, kernel = 5;
-    bool resume = false, no_augment = false, plain = false, no_demodulation = false;
+    bool resume = false, no_augment = false, plain = false, no_demodulation = false, no_opacity_weight = false;
     DeviceOptions device;
 };
 
@@ -69,6 +69,7 @@ Model start_of(const Options& o) {
     m.hidden = o.hidden;
     m.kernel = o.kernel;
     if (o.no_demodulation) m.demodulation = false;
+    if (o.no_opacity_weight) m.opacity_weight = false;
     if (m.hidden < 1 || m.hidden > 256) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 256", m.hidden), "--hidden");
     if (m.kernel < 1 || m.kernel > 15 || m.kernel % 2 == 0)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected an odd number, 1 to 15", m.kernel), "--kernel");
@@ -181,6 +182,8 @@ void add_train_command(CLI::App& app) {
         ->group("Model");
     c->add_flag("--plain", o->plain, "Without exposure, albedo floor and opacity weights: the reference's preprocessing")->group("Model");
     c->add_flag("--no-demodulation", o->no_demodulation, "Without dividing the radiance by the albedo")->group("Model");
+    c->add_flag("--no-opacity-weight", o->no_opacity_weight, "Without weights by opacity.A, which other renderers' files lack")
+        ->group("Model");
     c->footer("Examples:\n"
               "  clvr train pairs -o mine.safetensors --init default --patch 128 --batch 8 --epochs 40\n"
               "  clvr train a b c -o mine.safetensors --validate test\n"
