@@ -1,6 +1,7 @@
 // Every container that clvr reads, written from one sample: what the suites over all formats run on.
 #pragma once
 #include "host/io/volume/volume_file.hpp"
+#include "tests/io/dicom_writers.hpp"
 #include "tests/io/text_header_writers.hpp"
 #include "tests/io/volume_writers.hpp"
 
@@ -147,6 +148,17 @@ inline const std::vector<VolumeFormat>& volume_formats() {
          },
          VolumeFormat::no_geometry},
         {"dicom", [](const Folder& to, const Sample& s) { return dicom_folder(to, s, false); }},
+        {"dicom_enhanced",
+         [](const Folder& to, const Sample& s) { return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)))); }},
+        {"dicom_enhanced_implicit",
+         [](const Folder& to, const Sample& s) {
+             return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)), DicomSyntax{true}, true));
+         }},
+        {"dicom_enhanced_deflated",
+         [](const Folder& to, const Sample& s) {
+             return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)), DicomSyntax{false, false, true}));
+         }},
+        {"dicom_mosaic", [](const Folder& to, const Sample& s) { return single(to / "a.ima", dicom_file(mosaic_set(s))); }},
         {"dicom_rle", [](const Folder& to, const Sample& s) { return dicom_folder(to, s, true); }, VolumeFormat::geometry, false, 1, 7},
         {"raw",
          [](const Folder& to, const Sample& s) {

@@ -19,7 +19,6 @@ struct Arrangement {
     Geometry geometry;
     std::vector<SlicePlace> slices;
     std::size_t places = 0; ///< different places of slices
-    std::size_t times = 1;  ///< slices at every place
     std::vector<std::string> notes, decisions;
 };
 

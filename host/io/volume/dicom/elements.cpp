@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <fmt/format.h>
 
@@ -101,7 +102,8 @@ std::optional<double> DicomElements::decimal(DicomTag tag, const char* name, con
 
 double DicomElements::count(DicomTag tag, double fallback) const {
     const auto parts = texts(tag);
-    return parts.empty() ? fallback : decimal_of(parts.front()).value_or(fallback);
+    const double number = parts.empty() ? fallback : decimal_of(parts.front()).value_or(fallback);
+    return std::isfinite(number) ? number : fallback;
 }
 
 const DicomElements* DicomElements::item(DicomTag sequence) const {

@@ -2,7 +2,7 @@
 #include "host/io/volume/dicom/place.hpp"
 #include "host/io/volume/dicom/tags.hpp"
 
-#include <algorithm>
+#include <cmath>
 
 namespace clvr {
 
@@ -47,6 +47,7 @@ void read_labels(const FrameGroups& groups, DicomFrame& frame) {
         frame.time = *offset;
     else
         frame.time = groups.with(cardiac_synchronization, trigger_delay).real(trigger_delay).value_or(0);
+    if (!std::isfinite(frame.time)) frame.time = 0;
     frame.stack = groups.with(frame_content, stack_id).text(stack_id);
 }
 

@@ -18,13 +18,13 @@ double usual_step(const std::vector<double>& along, double rounding) {
     std::sort(steps.begin(), steps.end());
     auto first = steps.begin(), last = first;
     for (auto begin = steps.begin(); begin != steps.end(); ++begin) {
-        const double alike = *begin * (1 + tolerance) + std::min(rounding, 0.4 * *begin);
+        const double alike = *begin * (1 + tolerance) + std::min(rounding, 0.5 * *begin);
         if (const auto end = std::upper_bound(begin, steps.end(), alike); end - begin > last - first) first = begin, last = end;
     }
     return std::accumulate(first, last, 0.0) / static_cast<double>(last - first);
 }
 
-/// How far each place lies from the line that fits all best, as a function of its index.
+/// How far each place lies above the line that fits all best, as a function of its index.
 std::vector<double> residuals(const std::vector<double>& along, const std::vector<std::size_t>& index) {
     const auto n = static_cast<double>(along.size());
     double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
@@ -36,8 +36,7 @@ std::vector<double> residuals(const std::vector<double>& along, const std::vecto
     }
     const double slope = xx > 0 ? xy / xx : 0;
     std::vector<double> off;
-    for (std::size_t k = 0; k < along.size(); ++k)
-        off.push_back(std::abs(along[k] - mean_y - slope * (static_cast<double>(index[k]) - mean_x)));
+    for (std::size_t k = 0; k < along.size(); ++k) off.push_back(along[k] - mean_y - slope * (static_cast<double>(index[k]) - mean_x));
     return off;
 }
 
@@ -53,11 +52,12 @@ std::vector<std::size_t> count_steps(const std::vector<double>& along, double us
 /// Whether rounding alone explains that single distances look like gaps, as when 1.25 mm is written without decimals: 0, 1, 3, 4, 5.
 bool rounding_explains(const std::vector<double>& along, const std::vector<std::size_t>& counted, double rounding) {
     constexpr std::size_t least_places = 8, least_gaps = 2;
-    if (along.size() < least_places || counted.back() < along.size() - 1 + least_gaps) return false;
     std::vector<std::size_t> plain(along.size());
     std::iota(plain.begin(), plain.end(), std::size_t{0});
+    if (counted == plain || along.size() < least_places || counted.back() == plain.back() + least_gaps - 1) return false;
     const std::vector<double> off = residuals(along, plain);
-    return *std::max_element(off.begin(), off.end()) <= 0.6 * rounding;
+    const auto [lowest, highest] = std::minmax_element(off.begin(), off.end());
+    return *highest - *lowest <= 1.2 * rounding; // half of it to each side, and a little for the line
 }
 
 } // namespace
@@ -75,7 +75,7 @@ SliceLattice lattice_of(const std::vector<double>& along, double rounding) {
     const std::vector<double> fitted = residuals(along, l.index);
     for (std::size_t k = 0; k < along.size(); ++k) {
         const double plain = std::abs(along[k] - along.front() - l.step * static_cast<double>(l.index[k]));
-        l.in_step.push_back(std::min(plain, fitted[k]) <= allowed);
+        l.in_step.push_back(std::min(plain, std::abs(fitted[k])) <= allowed);
     }
     return l;
 }

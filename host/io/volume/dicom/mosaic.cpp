@@ -37,7 +37,7 @@ public:
                 const std::int64_t size = second_form_ ? *length : *length - first_items;
                 at += 16;
                 if (size < 0) break;
-                if (static_cast<std::uint64_t>(size) > bytes_.size() - std::min(at, bytes_.size())) return {};
+                if (at > bytes_.size() || static_cast<std::uint64_t>(size) > bytes_.size() - at) return {};
                 std::string text = bytes_.substr(at, static_cast<std::size_t>(size));
                 text = std::string(trimmed(text.substr(0, text.find('\0'))));
                 if (!text.empty()) found.push_back(text);
