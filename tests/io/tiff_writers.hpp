@@ -99,6 +99,47 @@ inline std::string described_tiff(std::size_t pages, const std::string& descript
     return w.file();
 }
 
+/// One page with a directory, and the pixels of all slices behind it.
+inline std::string one_directory(const Int3& dims, const std::vector<std::int16_t>& voxels, const std::string& description, bool big) {
+    TiffWriter w(big);
+    auto tags = w.grey(static_cast<std::uint32_t>(dims[0]), static_cast<std::uint32_t>(dims[1]), 16, 2);
+    tags[270] = w.text(description);
+    const std::string all = w.pixels(voxels);
+    w.page(tags, {all.substr(0, all.size() / static_cast<std::size_t>(dims[2]))});
+    std::string file = w.file();
+    const std::string entry = number(std::uint16_t{273}, big) + number(std::uint16_t{4}, big) + number(std::uint32_t{1}, big);
+    file.replace(file.rfind(entry) + entry.size(), 4, number(static_cast<std::uint32_t>(file.size()), big)); // not before it
+    return file + all;
+}
+
+/// One page of ImageDepth slices in tiles of 16 x 16 x 2, as they are or deflated.
+inline std::string deep_tiff(const Int3& dims, const std::vector<std::int16_t>& voxels, bool packed = false, bool big = false) {
+    TiffWriter w(big);
+    constexpr int edge = 16, deep = 2;
+    std::vector<std::string> tiles;
+    for (int z = 0; z < dims[2]; z += deep)
+        for (int y = 0; y < dims[1]; y += edge)
+            for (int x = 0; x < dims[0]; x += edge) {
+                std::vector<std::int16_t> tile(edge * edge * deep);
+                for (int k = 0; k < deep && z + k < dims[2]; ++k)
+                    for (int j = 0; j < edge && y + j < dims[1]; ++j)
+                        for (int i = 0; i < edge && x + i < dims[0]; ++i)
+                            tile[static_cast<std::size_t>((k * edge + j) * edge + i)] =
+                                voxels[(static_cast<std::size_t>(z + k) * static_cast<std::size_t>(dims[1]) +
+                                        static_cast<std::size_t>(y + j)) *
+                                           static_cast<std::size_t>(dims[0]) +
+                                       static_cast<std::size_t>(x + i)];
+                tiles.push_back(packed ? deflated(w.pixels(tile), false) : w.pixels(tile));
+            }
+    auto tags = w.grey(static_cast<std::uint32_t>(dims[0]), static_cast<std::uint32_t>(dims[1]), 16, 2);
+    tags[259] = w.words({static_cast<std::uint16_t>(packed ? 8 : 1)});
+    tags[322] = tags[323] = w.words({edge});
+    tags[32997] = w.longs({static_cast<std::uint32_t>(dims[2])});
+    tags[32998] = w.longs({deep});
+    w.page(tags, tiles);
+    return w.file();
+}
+
 /// OME-XML around one `Pixels` element's attributes and children.
 inline std::string ome_xml(const std::string& pixels, const std::string& inside = "<TiffData/>", const std::string& more = "") {
     return fmt::format(

@@ -3,6 +3,7 @@
 #include "host/io/volume/volume_file.hpp"
 #include "tests/io/dicom_writers.hpp"
 #include "tests/io/text_header_writers.hpp"
+#include "tests/io/tiff_writers.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <ostream>
@@ -17,7 +18,7 @@ struct Written {
 struct VolumeFormat {
     const char* name;
     Written (*write)(const Folder& to, const Sample& s);
-    enum Keeps { geometry, spacing_and_origin, no_geometry } keeps = geometry;
+    enum Keeps { geometry, spacing_and_origin, spacing_only, no_geometry } keeps = geometry;
     bool checksum = false; ///< a flipped bit among the voxels is found
     int spare = 1;         ///< how many bytes at the end must be cut to lose something
     int step = 1;          ///< the slow suite damages one byte of so many: a reader that starts a process takes long
@@ -138,6 +139,25 @@ inline const std::vector<VolumeFormat>& volume_formats() {
         {"tiff_deflate", [](const Folder& to, const Sample& s) { return single(to / "a.tif", packed_tiff(s, 8, 0)); },
          VolumeFormat::no_geometry},
         {"tiff_tiles", [](const Folder& to, const Sample& s) { return single(to / "a.tif", packed_tiff(s, 1, 16)); },
+         VolumeFormat::no_geometry},
+        {"tiff_ome",
+         [](const Folder& to, const Sample& s) {
+             const Double3 mm = s.geometry.spacing;
+             const std::string sizes = fmt::format(
+                 R"(SizeX="{}" SizeY="{}" SizeC="1" SizeZ="{}" SizeT="1" DimensionOrder="XYZCT" PhysicalSizeX="{}" PhysicalSizeY="{}" PhysicalSizeZ="{}")",
+                 s.dims[0], s.dims[1], s.dims[2], 1000 * mm[0], 1000 * mm[1], 1000 * mm[2]);
+             auto pages = tiff_pages(s);
+             pages[0].description = ome_xml(sizes);
+             return single(to / "a.ome.tif", tiff(pages));
+         },
+         VolumeFormat::spacing_only},
+        {"tiff_imagej_one_directory",
+         [](const Folder& to, const Sample& s) {
+             return single(to / "a.tif", one_directory(s.dims, s.voxels,
+                                                       fmt::format("ImageJ=1.53t\nimages={}\nslices={}\n", s.dims[2], s.dims[2]), true));
+         },
+         VolumeFormat::no_geometry},
+        {"tiff_image_depth", [](const Folder& to, const Sample& s) { return single(to / "a.tif", deep_tiff(s.dims, s.voxels)); },
          VolumeFormat::no_geometry},
         {"tiff_folder",
          [](const Folder& to, const Sample& s) {

@@ -4,6 +4,7 @@
 #include "tests/io/tiff_writers.hpp"
 
 #include <gmock/gmock.h>
+#include <turbojpeg.h>
 
 namespace clvr::test {
 namespace {
@@ -16,7 +17,10 @@ using ::testing::IsEmpty;
 
 SliceStack stack_of(std::vector<std::string> names, bool allow_gaps = false) {
     std::sort(names.begin(), names.end());
-    return slice_stack("the_folder", names, allow_gaps);
+    for (std::string& n : names) n = "the_folder/" + n;
+    SliceStack stack = slice_stack("the_folder", names, allow_gaps);
+    for (std::string& p : stack.paths) p.erase(0, std::string("the_folder/").size());
+    return stack;
 }
 /// Names in the order in which slices must come.
 void expect_order(const std::vector<std::string>& names) { EXPECT_THAT(stack_of(names).paths, ElementsAreArray(names)); }
@@ -48,6 +52,7 @@ TEST(SliceNames, AreOrderedByTheNumberThatVaries) {
     expect_order({"20240101235958.tif", "20240101235959.tif", "20240102000004.tif"}); // times, not counts
     expect_order({"99999999999999999999998.tif", "99999999999999999999999.tif", "100000000000000000000000.tif"});
     expect_order({"only.tif"});
+    expect_order({"z8/image.tif", "z9/image.tif", "z10/image.tif"});
 }
 
 TEST(SliceNames, WhatIsNotSureIsRefused) {
@@ -60,6 +65,8 @@ TEST(SliceNames, WhatIsNotSureIsRefused) {
     expect_refused({"x.tif", "y.tif"}, {"x.tif", "y.tif"});
     expect_refused({"a1.tif", "a01.tif", "a2.tif"}, {"a1.tif", "a01.tif", "same number"});
     expect_refused({"a1.tif", "a1.tiff"}, {"same number"});
+    expect_refused({"a/1.tif", "a/2.tif", "b/1.tif", "b/2.tif"}, {"a/1.tif", "b/1.tif"});
+    expect_refused({"s1/1.tif", "s1/2.tif", "s2/1.tif", "s2/2.tif"}, {"several numbers"});
     expect_refused({"slice.tif", "slice1.tif", "slice2.tif"}, {"slice.tif"});
     expect_refused({"z0,0.tif", "z0,5.tif", "z1,0.tif", "z1,5.tif"}, {"several numbers"});
 }
@@ -126,6 +133,15 @@ TEST(SliceFolder, TakesSpacingAndCalibrationFromTheSlices) {
     expect_error([&] { slices(calibrated, head); }, {"calibration", "a2.tif", "a1.tif"});
     const std::string ome = ome_xml(R"(SizeX="6" SizeY="7" SizeZ="1" PhysicalSizeX="0.2" PhysicalSizeY="0.2" PhysicalSizeZ="0.7")");
     EXPECT_NEAR(slices(ome, ome).geometry.spacing[2], 7e-4, 1e-9);
+}
+
+TEST(SliceFolder, APictureOnTopDoesNotHideTheVolumeBelow) {
+    const Folder folder;
+    for (int k = 1; k <= 3; ++k) write(folder / fmt::format("s/series/a{}.tif", k), described_tiff(1, ""));
+    write(folder / "s/logo.png", png_file(1, 1, 8, PNG_COLOR_TYPE_GRAY, "x"));
+    const Voxels v = read_volume(folder / "s");
+    EXPECT_EQ(v.dims, (Int3{6, 7, 3}));
+    EXPECT_THAT(v.notes, Contains(HasSubstr("1 PNG file is left out")));
 }
 
 class PngSlices : public ::testing::Test {
@@ -213,6 +229,42 @@ TEST_F(PngSlices, AreRefusedWhereNotAlikeOrDamaged) {
     huge.replace(16, 8, "\x7f\xff\xff\xff\x7f\xff\xff\xff");
     huge.replace(29, 4, number(static_cast<std::uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(&huge[12]), 17)), true));
     expect_error([&] { once(huge); }, {"a.png"});
+}
+
+/// A JPEG of one value, grey or with colour channels.
+std::string jpeg_of(int width, int height, const std::vector<unsigned char>& pixels, bool colour) {
+    const std::unique_ptr<void, int (*)(tjhandle)> handle(tjInitCompress(), &tjDestroy);
+    unsigned char* bytes = nullptr;
+    unsigned long size = 0;
+    EXPECT_EQ(tjCompress2(handle.get(), pixels.data(), width, 0, height, colour ? TJPF_RGB : TJPF_GRAY, &bytes, &size,
+                          colour ? TJSAMP_444 : TJSAMP_GRAY, 100, 0),
+              0);
+    const std::string jpeg(reinterpret_cast<const char*>(bytes), size);
+    tjFree(bytes);
+    return jpeg;
+}
+
+TEST(JpegSlices, GreyIsReadColourRefused) {
+    const Folder folder;
+    const std::vector<unsigned char> grey(16 * 8, 100);
+    write(folder / "s/a9.jpg", jpeg_of(16, 8, grey, false));
+    write(folder / "s/a10.JPEG", jpeg_of(16, 8, std::vector<unsigned char>(16 * 8, 200), false));
+    Voxels v = read_volume(folder / "s");
+    EXPECT_EQ(v.dims, (Int3{16, 8, 2}));
+    EXPECT_EQ(v.bytes[5], 100);
+    EXPECT_EQ(v.bytes[128], 200);
+    EXPECT_THAT(v.decisions, Contains(HasSubstr("lossy")));
+    v = read_volume(write(folder / "b.jpg", jpeg_of(16, 8, std::vector<unsigned char>(3 * 16 * 8, 100), true)));
+    EXPECT_EQ(v.dims, (Int3{16, 8, 1}));
+    EXPECT_EQ(v.bytes[5], 100);
+    std::vector<unsigned char> red(3 * 16 * 8, 0);
+    for (std::size_t i = 0; i < red.size(); i += 3) red[i] = 200;
+    expect_error([&] { read_volume(write(folder / "b.jpg", jpeg_of(16, 8, red, true))); }, {"coloured"});
+    const std::string whole = jpeg_of(16, 8, grey, false);
+    for (std::size_t i = 4; i < whole.size() - 4; i += 5)
+        expect_error([&] { read_volume(write(folder / "b.jpg", whole.substr(0, i))); }, {"b.jpg"});
+    write(folder / "t/a.bmp", "BM");
+    expect_error([&] { read_volume(folder / "t"); }, {"1 BMP file", "PNG or TIFF"});
 }
 
 } // namespace

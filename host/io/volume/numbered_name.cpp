@@ -22,12 +22,11 @@ std::string without_end_zeros(const std::string& digits) {
 }
 
 /// The name without the ending of a picture: other endings may be the slice's number.
-std::string stem_of(const std::string& path) {
-    const std::filesystem::path name = std::filesystem::path(path).filename();
-    const std::string ending = lower_case(name.extension().string());
+std::string stem_of(const std::string& name) {
+    const std::string ending = lower_case(std::filesystem::path(name).extension().string());
     for (const char* known : {".tif", ".tiff", ".png", ".jpg", ".jpeg"})
-        if (ending == known) return name.stem().string();
-    return name.string();
+        if (ending == known) return name.substr(0, name.size() - ending.size());
+    return name;
 }
 
 } // namespace
@@ -58,10 +57,10 @@ std::string NumberedName::pattern() const {
     return pattern;
 }
 
-NumberedName numbered_name(const std::string& path, bool signs_after_letters) {
-    const std::string stem = stem_of(path);
+NumberedName numbered_name(const std::string& whole, bool signs_after_letters) {
+    const std::string stem = stem_of(whole);
     NumberedName name;
-    name.path = path;
+    name.name = whole;
     std::string text;
     for (std::size_t at = 0; at < stem.size();) {
         if (!is_digit(stem[at])) {

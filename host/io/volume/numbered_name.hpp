@@ -19,14 +19,15 @@ bool operator<(const NameNumber& a, const NameNumber& b);
 
 /// A name cut into texts and numbers.
 struct NumberedName {
-    std::string path;
+    std::string name;
     std::vector<std::string> texts; ///< in lower case; one more than numbers
     std::vector<NameNumber> numbers;
     std::string pattern() const; ///< the texts with # for each number: alike for files of one stack
 };
-/// Of the file's name without a picture's ending. A minus is a sign at the start and behind what is neither letter nor digit; with
-/// `signs_after_letters` also behind a letter. A point between two numbers is a decimal one unless more points follow or precede
+/// Of a file's name, with the folders before it, without a picture's ending. A minus is a sign at the start and behind what is neither
+/// letter nor digit; with `signs_after_letters` also behind a letter. A point between two numbers is a decimal one unless more points
+/// follow or precede
 /// ("1.2.840").
-NumberedName numbered_name(const std::string& path, bool signs_after_letters);
+NumberedName numbered_name(const std::string& whole, bool signs_after_letters);
 
 } // namespace clvr

@@ -47,6 +47,8 @@ public:
         if ((std::uint64_t{width} * png_get_channels(png_, info_) * bits_ + 7) / 8 * height >
             std::filesystem::file_size(path) * greatest_ratio)
             fail_and_free(fmt::format("is too short for {} x {} pixels: it is truncated or damaged", width, height));
+        has_alpha = (colour_ & PNG_COLOR_MASK_ALPHA) != 0;
+        grey_of_colour = colour_ == PNG_COLOR_TYPE_RGB || colour_ == PNG_COLOR_TYPE_RGB_ALPHA; // decode refuses others
         type = bits_ == 16 ? SampleType::u16 : SampleType::u8;
         form = fmt::format("{} x {} {} bits", width, height, bits_);
         if (colour_ == PNG_COLOR_TYPE_PALETTE) {
@@ -57,9 +59,6 @@ public:
     ~PngSlice() override { png_destroy_read_struct(&png_, &info_, nullptr); }
     PngSlice(const PngSlice&) = delete;
     PngSlice& operator=(const PngSlice&) = delete;
-
-    bool has_alpha() const { return (colour_ & PNG_COLOR_MASK_ALPHA) != 0; }
-    bool has_colour() const { return colour_ == PNG_COLOR_TYPE_RGB || colour_ == PNG_COLOR_TYPE_RGB_ALPHA; }
 
     void decode(unsigned char* to) override {
         const std::size_t channels = png_get_channels(png_, info_), size = bits_ == 16 ? 2 : 1;
@@ -96,7 +95,7 @@ private:
     void take_first(const unsigned char* from, std::size_t channels, std::size_t size, unsigned char* to) {
         for (std::size_t i = 0, n = std::size_t{width} * height; i < n; ++i) {
             const unsigned char* const pixel = from + i * channels * size;
-            if (has_colour() && !(std::equal(pixel, pixel + size, pixel + size) && std::equal(pixel, pixel + size, pixel + 2 * size)))
+            if (grey_of_colour && !(std::equal(pixel, pixel + size, pixel + size) && std::equal(pixel, pixel + size, pixel + 2 * size)))
                 bad_file(path_, "pixel {}, {} is coloured: clvr renders scalar volumes, save it as greyscale", i % width, i / width);
             std::copy(pixel, pixel + size, to + i * size);
         }
@@ -113,22 +112,7 @@ private:
 } // namespace
 
 Voxels read_png_slices(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options) {
-    check_frame(options.frame, 1, path);
-    if (options.channel.value_or(0) != 0) bad_file(path, "channel {} is not there: PNG slices have 1 channel", *options.channel);
-    Voxels v;
-    std::string alpha, colour;
-    stack_slices(v, path, files.size() == 1 ? "PNG" : "PNG slices", files, [&](const std::string& name) {
-        auto slice = std::make_unique<PngSlice>(name);
-        if (slice->has_alpha() && alpha.empty()) alpha = name;
-        if (slice->has_colour() && colour.empty()) colour = name;
-        return slice;
-    });
-    if (!alpha.empty()) v.notes.push_back("the pictures' alpha is left out");
-    if (!colour.empty()) v.decisions.push_back("red, green and blue are equal in every pixel: read as grey");
-    v.geometry.spacing = options.spacing.value_or(Double3{1, 1, 1});
-    check_geometry(v.geometry, path);
-    if (!options.spacing) v.notes.push_back("the file gives no voxel spacing: 1 mm is assumed (--spacing sets it)");
-    return v;
+    return read_pictures(path, files, options, "PNG", [](const std::string& name) { return std::make_unique<PngSlice>(name); });
 }
 
 } // namespace clvr

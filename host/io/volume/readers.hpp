@@ -13,8 +13,9 @@ Voxels read_vti(const std::string& path, const VolumeReadOptions& options);
 Voxels read_raw(const std::string& path, const VolumeReadOptions& options);
 /// One file of several pages, or the slices of a stack in order.
 Voxels read_tiff(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options);
-/// PNG pictures of grey values: one slice, or the slices of a stack in order.
+/// PNG or JPEG pictures of grey values: one slice, or the slices of a stack in order.
 Voxels read_png_slices(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options);
+Voxels read_jpeg_slices(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options);
 /// The series of one file among its neighbours, or of a folder.
 Voxels read_dicom(const std::string& path, const VolumeReadOptions& options);
 

@@ -34,4 +34,24 @@ void stack_slices(Voxels& v, const std::string& path, const std::string& format,
     }
 }
 
+Voxels read_pictures(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options,
+                     const std::string& kind, const OpenSlice& open) {
+    check_frame(options.frame, 1, path);
+    if (options.channel.value_or(0) != 0)
+        bad_file(path, "channel {} is not there: {} slices have 1 channel, counted from 0", *options.channel, kind);
+    Voxels v;
+    bool alpha = false, colour = false;
+    stack_slices(v, path, files.size() == 1 ? kind : kind + " slices", files, [&](const std::string& name) {
+        auto slice = open(name);
+        alpha |= slice->has_alpha, colour |= slice->grey_of_colour;
+        return slice;
+    });
+    if (alpha) v.notes.push_back("the pictures' alpha is left out");
+    if (colour) v.decisions.push_back("red, green and blue are equal in every pixel: read as grey");
+    v.geometry.spacing = options.spacing.value_or(Double3{1, 1, 1});
+    check_geometry(v.geometry, path);
+    if (!options.spacing) v.notes.push_back("the file gives no voxel spacing: 1 mm is assumed (--spacing sets it)");
+    return v;
+}
+
 } // namespace clvr

@@ -12,15 +12,14 @@ namespace clvr {
 
 namespace {
 
-std::string name_of(const std::string& path) { return std::filesystem::path(path).filename().string(); }
-
 /// The names cut so that they have one pattern. Throws Error{input} where they have several: no file is left out in silence.
 std::vector<NumberedName> names_of_one_stack(const std::string& folder, const std::vector<std::string>& files) {
+    const auto relative = [&](const std::string& file) { return std::filesystem::path(file).lexically_relative(folder).string(); };
     std::map<std::string, std::vector<NumberedName>> first_try;
     for (const bool signs_after_letters : {false, true}) { // z-1, z0, z1: a minus that not all have is a sign
         std::map<std::string, std::vector<NumberedName>> stacks;
         for (const std::string& f : files) {
-            NumberedName n = numbered_name(f, signs_after_letters);
+            NumberedName n = numbered_name(relative(f), signs_after_letters);
             stacks[n.pattern()].push_back(std::move(n));
         }
         if (stacks.size() == 1) return std::move(stacks.begin()->second);
@@ -33,9 +32,9 @@ std::vector<NumberedName> names_of_one_stack(const std::string& folder, const st
     const std::string more = stacks.size() > 2 ? fmt::format(" (and {} more kinds of names)", stacks.size() - 2) : "";
     if (other.size() == 1 && most.size() > 1)
         bad_file(folder, "{} is not named like the {} other slices ({} ...){}: move it elsewhere, or rename it if it is one of them",
-                 name_of(other.front().path), most.size(), name_of(most.front().path), more);
+                 other.front().name, most.size(), most.front().name, more);
     bad_file(folder, "{} file{} named like {}, {} like {}{}: put the slices of one stack into a folder of their own", most.size(),
-             most.size() == 1 ? " is" : "s are", name_of(most.front().path), other.size(), name_of(other.front().path), more);
+             most.size() == 1 ? " is" : "s are", most.front().name, other.size(), other.front().name, more);
 }
 
 /// Whether the points in column `c` are no decimal ones: 1.1, 1.2, ... 1.10.
@@ -85,15 +84,14 @@ std::size_t order_names(const std::string& folder, std::vector<NumberedName>& na
         if (values.size() > 1) varying.push_back(c);
     }
     if (varying.empty())
-        bad_file(folder, "{} and {} have the same number: expected one that orders the slices", name_of(names[0].path),
-                 name_of(names[1].path));
+        bad_file(folder, "{} and {} have the same number: expected one that orders the slices", names[0].name, names[1].name);
     sort_by(names, varying.front());
     if (varying.size() == 1) {
         const std::size_t c = varying.front();
         for (std::size_t i = 1; i < names.size(); ++i)
             if (!(names[i - 1].numbers[c] < names[i].numbers[c]))
-                bad_file(folder, "{} and {} have the same number, {}: expected each slice once", name_of(names[i - 1].path),
-                         name_of(names[i].path), names[i].numbers[c].text());
+                bad_file(folder, "{} and {} have the same number, {}: expected each slice once", names[i - 1].name, names[i].name,
+                         names[i].numbers[c].text());
         return c;
     }
     std::string ranges;
@@ -126,7 +124,7 @@ void check_steps(const std::string& folder, const std::vector<NumberedName>& nam
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const bool missing = steps[i] >= 1.75 * step;
         if (!missing && std::abs(steps[i] - step) <= tolerance) continue;
-        const std::string a = name_of(names[i].path), b = name_of(names[i + 1].path);
+        const std::string a = names[i].name, b = names[i + 1].name;
         const std::string what =
             missing ? fmt::format("slice {:.{}f} is missing between {} and {}", names[i].numbers[c].value() + step, decimals, a, b)
                     : fmt::format("from {} to {} is a step of {:g}, elsewhere of {:g}", a, b, steps[i], step);
@@ -148,7 +146,7 @@ SliceStack slice_stack(const std::string& folder, const std::vector<std::string>
             for (NumberedName& n : names) n.numbers[c].whole = std::exchange(n.numbers[c].fraction, "");
     const std::size_t c = order_names(folder, names, stack);
     check_steps(folder, names, c, allow_gaps, stack);
-    for (std::size_t i = 0; i < names.size(); ++i) stack.paths[i] = names[i].path;
+    for (std::size_t i = 0; i < names.size(); ++i) stack.paths[i] = (std::filesystem::path(folder) / names[i].name).string();
     stack.decisions.push_back(fmt::format("order of slices from the names: {}", range_text(names, c)));
     return stack;
 }

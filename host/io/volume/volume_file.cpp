@@ -2,12 +2,14 @@
 #include "host/io/byte_stream.hpp"
 #include "host/io/volume/folder.hpp"
 #include "host/io/volume/format.hpp"
+#include "host/io/volume/header_text.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
 #include "host/io/volume/slices.hpp"
 #include "host/io/volume/tiff_ome.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -26,25 +28,62 @@ VolumeFormat format_in_folder(const std::string& file) {
     return by_head == VolumeFormat::unknown ? format_of_name(file) : by_head;
 }
 
-/// The slices of a stack: TIFF files, else PNG. Files of one OME-TIFF set say themselves how they belong together.
-Voxels read_stack(const std::string& path, const std::map<VolumeFormat, std::vector<std::string>>& files,
+using SliceReader = Voxels (*)(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options);
+struct SliceFormat {
+    VolumeFormat format;
+    const char* name;
+    SliceReader read;
+};
+/// Pictures of the first that a folder has are its slices; the others are previews or copies of them.
+constexpr std::array slice_formats{SliceFormat{VolumeFormat::tiff, "TIFF", read_tiff},
+                                   SliceFormat{VolumeFormat::png, "PNG", read_png_slices},
+                                   SliceFormat{VolumeFormat::jpeg, "JPEG", read_jpeg_slices}};
+
+/// Files of one OME-TIFF set say themselves how they belong together, others by their names.
+Voxels read_stack(const std::string& path, const SliceFormat& format, const std::vector<std::string>& files,
                   const VolumeReadOptions& options) {
-    const auto tiffs = files.find(VolumeFormat::tiff), pngs = files.find(VolumeFormat::png);
-    const bool is_tiff = tiffs != files.end();
-    const std::vector<std::string>& slices = is_tiff ? tiffs->second : pngs->second;
-    Voxels v;
-    if (is_tiff && slices.size() > 1 && is_ome_set(path, slices)) {
-        v = read_tiff(path, {slices.front()}, options);
-    } else {
-        const SliceStack stack = slice_stack(path, slices, options.allow_gaps);
-        v = (is_tiff ? read_tiff : read_png_slices)(path, stack.paths, options);
-        v.notes.insert(v.notes.end(), stack.notes.begin(), stack.notes.end());
-        v.decisions.insert(v.decisions.end(), stack.decisions.begin(), stack.decisions.end());
-    }
-    if (is_tiff && pngs != files.end())
-        v.notes.push_back(
-            fmt::format("{} PNG file{} left out beside the TIFF slices", pngs->second.size(), pngs->second.size() == 1 ? " is" : "s are"));
+    if (format.format == VolumeFormat::tiff && files.size() > 1 && is_ome_set(path, files))
+        return read_tiff(path, {files.front()}, options);
+    const SliceStack stack = slice_stack(path, files, options.allow_gaps);
+    Voxels v = format.read(path, stack.paths, options);
+    v.notes.insert(v.notes.end(), stack.notes.begin(), stack.notes.end());
+    v.decisions.insert(v.decisions.end(), stack.decisions.begin(), stack.decisions.end());
     return v;
+}
+
+/// The slices among the files of a folder, by format; what is left out is noted.
+Voxels read_slices(const std::string& path, const std::map<VolumeFormat, std::vector<std::string>>& files,
+                   const VolumeReadOptions& options) {
+    std::optional<Voxels> v;
+    const char* name = nullptr;
+    for (const SliceFormat& format : slice_formats) {
+        const auto found = files.find(format.format);
+        if (found == files.end()) continue;
+        if (!v) {
+            v = read_stack(path, format, found->second, options);
+            name = format.name;
+            continue;
+        }
+        const std::size_t n = found->second.size();
+        v->notes.push_back(fmt::format("{} {} file{} left out beside the {} slices", n, format.name, n == 1 ? " is" : "s are", name));
+    }
+    return std::move(*v);
+}
+
+/// What to do with pictures that are not read.
+std::string bitmaps(const std::vector<std::string>& files) {
+    const auto is_bitmap = [](const std::string& file) { return ends_with(lower_case(file), ".bmp"); };
+    const auto n = std::count_if(files.begin(), files.end(), is_bitmap);
+    return n == 0 ? "" : fmt::format(" ({} BMP file{}: save them as PNG or TIFF)", n, n == 1 ? "" : "s");
+}
+
+/// Whether the folders inside `path` hold DICOM or TIFF.
+bool has_volume_below(const std::string& path) {
+    const std::vector<std::string> deep = files_in(path, true).paths;
+    return std::any_of(deep.begin(), deep.end(), [](const std::string& file) {
+        const VolumeFormat format = format_in_folder(file);
+        return format == VolumeFormat::dicom || format == VolumeFormat::tiff;
+    });
 }
 
 /// A DICOM series where any file is DICOM, else a stack of slices. Where nothing of a volume lies on top, the folders inside are searched
@@ -56,10 +95,15 @@ Voxels read_folder(const std::string& path, const VolumeReadOptions& options) {
         for (const std::string& file : all.paths) {
             const VolumeFormat format = format_in_folder(file);
             if (format == VolumeFormat::dicom) return read_dicom(path, options);
-            if (format == VolumeFormat::tiff || format == VolumeFormat::png) files[format].push_back(file);
+            const auto is_slice = [&](const SliceFormat& s) { return s.format == format; };
+            if (std::any_of(slice_formats.begin(), slice_formats.end(), is_slice)) files[format].push_back(file);
         }
-        if (!files.empty()) return read_stack(path, files, options);
-        if (options.recursive) bad_file(path, "the folder holds neither DICOM nor TIFF nor PNG slices, nor do the folders inside it");
+        const bool only_pictures = !files.empty() && files.count(VolumeFormat::tiff) == 0; // they may be previews of what lies below
+        if (only_pictures && !options.recursive && has_volume_below(path)) files.clear();
+        if (!files.empty()) return read_slices(path, files, options);
+        if (options.recursive)
+            bad_file(path, "the folder holds neither DICOM nor TIFF, PNG or JPEG slices, nor do the folders inside it{}",
+                     bitmaps(all.paths));
         VolumeReadOptions deep = options;
         deep.recursive = true;
         return read_folder(path, deep);
@@ -71,12 +115,14 @@ Voxels read_folder(const std::string& path, const VolumeReadOptions& options) {
 
 using Reader = Voxels (*)(const std::string& path, const VolumeReadOptions& options);
 Voxels read_tiff_file(const std::string& path, const VolumeReadOptions& options) { return read_tiff(path, {path}, options); }
+Voxels read_jpeg_file(const std::string& path, const VolumeReadOptions& options) { return read_jpeg_slices(path, {path}, options); }
 Voxels read_png_file(const std::string& path, const VolumeReadOptions& options) { return read_png_slices(path, {path}, options); }
 
 const std::map<VolumeFormat, Reader> readers{
-    {VolumeFormat::nifti, read_nifti}, {VolumeFormat::nrrd, read_nrrd},      {VolumeFormat::metaimage, read_metaimage},
-    {VolumeFormat::dicom, read_dicom}, {VolumeFormat::tiff, read_tiff_file}, {VolumeFormat::png, read_png_file},
-    {VolumeFormat::vtk, read_vtk},     {VolumeFormat::vti, read_vti},        {VolumeFormat::raw, read_raw}};
+    {VolumeFormat::nifti, read_nifti},    {VolumeFormat::nrrd, read_nrrd},      {VolumeFormat::metaimage, read_metaimage},
+    {VolumeFormat::dicom, read_dicom},    {VolumeFormat::tiff, read_tiff_file}, {VolumeFormat::png, read_png_file},
+    {VolumeFormat::jpeg, read_jpeg_file}, {VolumeFormat::vtk, read_vtk},        {VolumeFormat::vti, read_vti},
+    {VolumeFormat::raw, read_raw}};
 
 Voxels read_any(const std::string& path, const VolumeReadOptions& options) {
     std::error_code error;
@@ -98,10 +144,11 @@ Voxels read_volume(const std::string& path, const VolumeReadOptions& options) {
             v.geometry.origin[i] += 0.0;
             for (double& x : v.geometry.direction.row[i]) x += 0.0;
         }
-        const bool raw = v.format == "RAW", picture = starts_with(v.format, "TIFF") || starts_with(v.format, "PNG");
+        const bool raw = v.format == "RAW",
+                   picture = starts_with(v.format, "TIFF") || starts_with(v.format, "PNG") || starts_with(v.format, "JPEG");
         if (!raw && (!options.type.empty() || !options.endian.empty()))
             v.notes.push_back("--type and --endian are for RAW files: the file's own were taken");
-        if (!raw && !picture && options.spacing) v.notes.push_back("--spacing is for RAW, TIFF and PNG: the file's own was taken");
+        if (!raw && !picture && options.spacing) v.notes.push_back("--spacing is for RAW, TIFF, PNG and JPEG: the file's own was taken");
         return v;
     } catch (const fs::filesystem_error& e) {
         throw Error(ErrorKind::input, fmt::format("cannot be read: {}", e.code().message()), path);
