@@ -42,7 +42,7 @@ struct Axis {
         }
         const double rough = (high - low) / 5, power = std::pow(10, std::floor(std::log10(rough))), part = rough / power;
         const double step = power * (part < 1.5 ? 1 : part < 3.5 ? 2 : part < 7.5 ? 5 : 10);
-        for (double v = std::ceil(low / step); v * step <= high; v += 1) at.push_back(v * step);
+        for (double v = std::ceil(low / step); v * step <= high; v += 1) at.push_back(v * step + 0.0); // never -0
         return at;
     }
 };

@@ -108,7 +108,7 @@ TEST(CommandLine, OptionsStandBeforeAndAfterArguments) {
         const Words path = Program::path(command);
         for (CLI::Option* o : command.get_options()) {
             if (o->get_positional() || o == command.get_help_ptr()) continue;
-            Words given{o->get_name()};
+            Words given{"--" + o->get_lnames().front()};
             std::size_t times = 1;
             if (o->get_items_expected_max() > 0) given.push_back(a_value(*o));
             if (o->get_items_expected_max() > 1) given = joined({given, given}), times = 2;

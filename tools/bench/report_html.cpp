@@ -27,6 +27,13 @@ std::string label(const DeviceRows& d) {
                        d.facts.sub_devices ? fmt::format(" {}/{}", d.facts.sub_device + 1, d.facts.sub_devices) : "");
 }
 
+/// Three digits that count, without an exponent.
+std::string number_text(double v) {
+    if (v < 999.5) return fmt::format("{:.3g}", v);
+    const double unit = std::pow(10, std::floor(std::log10(v)) - 2);
+    return fmt::format("{:.0f}", std::round(v / unit) * unit);
+}
+
 std::string table(const DeviceRows& d) {
     std::string html =
         "<table><tr><th>stage</th><th>time</th><th>spread</th><th>rate</th><th></th><th>of native</th><th>of ceiling</th><th "
@@ -42,7 +49,7 @@ std::string table(const DeviceRows& d) {
                         "class=\"said\">{}</td></tr>\n",
                         r.status == Status::wrong_result || r.status == Status::error ? " class=\"bad\"" : "", escaped(r.stage),
                         known ? time_text(r.seconds) : "", known && r.batches > 2 ? fmt::format("{:.1f} %", 100 * r.spread) : "",
-                        known ? fmt::format("{:.3g}", r.rate) : "", known ? escaped(r.unit) : "", percent(known ? r.native_share : 0),
+                        known ? number_text(r.rate) : "", known ? escaped(r.unit) : "", percent(known ? r.native_share : 0),
                         percent(known ? r.share : 0), escaped(said));
     }
     return html + "</table>\n";
@@ -66,7 +73,7 @@ std::string bars(const Report& report, const Stage& stage) {
         inner += fmt::format(
             "<rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"{}\"/><text class=\"small\" x=\"{:.1f}\" y=\"{}\">{}</text>\n",
             left, y + 2, width, height - 4, colours[i % std::size(colours)], left + width + 5, y + 13,
-            r ? fmt::format("{:.3g} {}", r->rate, escaped(r->unit)) : "no result");
+            r ? number_text(r->rate) + " " + escaped(r->unit) : "no result");
         y += height;
     }
     return fmt::format("<svg viewBox=\"0 0 520 {0}\" width=\"520\" height=\"{0}\" role=\"img\"><text x=\"{1}\" y=\"13\" "
@@ -79,7 +86,7 @@ std::string ceilings(const DeviceRows& d) {
     std::string known;
     for (const char* stage : {"FMA rate", "copy", "triad"})
         if (const Row* r = d.ok_row(stage))
-            known += fmt::format("{}{} {:.3g} {}", known.empty() ? "" : ", ", stage, r->rate, escaped(r->unit));
+            known += fmt::format("{}{} {} {}", known.empty() ? "" : ", ", stage, number_text(r->rate), escaped(r->unit));
     constexpr int height = 20, left = 130, full = 400;
     std::string inner;
     int y = 0;
@@ -89,15 +96,15 @@ std::string ceilings(const DeviceRows& d) {
         inner += fmt::format(
             "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" "
             "fill=\"#e4e4e4\"/><rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"{}\"/><text class=\"small\" x=\"{}\" "
-            "y=\"{}\">{:.0f} % of {}: {:.3g} {}</text>\n",
+            "y=\"{}\">{:.0f} % of {}: {} {}</text>\n",
             left - 8, y + 14, escaped(r.stage), left, y + 3, full, height - 6, left, y + 3, std::max(1.0, full * std::min(r.share, 1.0)),
             height - 6, colours[0], left + full + 8, y + 14, 100 * r.share, ceiling == Ceiling::arithmetic ? "FMA rate" : "bandwidth",
-            r.rate, escaped(r.unit));
+            number_text(r.rate), escaped(r.unit));
         y += height;
     }
     if (inner.empty()) return "";
     return fmt::format(
-        "<p class=\"notes\">{}: {}.</p>\n<svg viewBox=\"0 0 780 {2}\" width=\"780\" height=\"{2}\" role=\"img\">\n{3}</svg>\n",
+        "<p class=\"notes\">{0}: {1}.</p>\n<svg viewBox=\"0 0 780 {2}\" width=\"780\" height=\"{2}\" role=\"img\">\n{3}</svg>\n",
         escaped(label(d)), known, y, inner);
 }
 
@@ -186,10 +193,10 @@ std::string roofline_svg(const DeviceRows& d) {
     svg +=
         fmt::format("<polyline fill=\"none\" stroke=\"#444\" stroke-width=\"2\" points=\"{:.1f},{:.1f} {:.1f},{:.1f} {:.1f},{:.1f}\"/>\n",
                     x(start_x), y(start_y), x(ridge), y(peak), x(end), y(peak));
-    svg += fmt::format("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">FMA rate {:.3g} GFLOP/s</text>\n", right,
-                       y(peak) - 6, peak * 1e-9);
-    svg += fmt::format("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\">{:.3g} GB/s</text>\n", x(start_x) + 24,
-                       std::min(y(start_y) + 2, bottom - 4), bytes * 1e-9);
+    svg += fmt::format("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">FMA rate {} GFLOP/s</text>\n", right,
+                       y(peak) - 6, number_text(peak * 1e-9));
+    svg += fmt::format("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\">{} GB/s</text>\n", x(start_x) + 24,
+                       std::min(y(start_y) + 2, bottom - 4), number_text(bytes * 1e-9));
     Labels labels({left + 2, top, 618, bottom - 2});
     labels.keep_free({right - 170, y(peak) - 20, right, y(peak) + 2});                      // "FMA rate ..."
     labels.keep_free({x(start_x) + 20, y(start_y) - 12, x(start_x) + 100, y(start_y) + 6}); // "... GB/s"
