@@ -120,6 +120,17 @@ Frame input_frame(const Options& o) {
     return frame;
 }
 
+/// "albedo normal depth" of their channels.
+std::string layers_of(const std::vector<std::string>& channels) {
+    std::string layers, last;
+    for (const auto& channel : channels) {
+        const std::string layer = channel.substr(0, channel.find('.'));
+        if (layer != last) layers += (layers.empty() ? "" : " ") + layer;
+        last = layer;
+    }
+    return layers;
+}
+
 /// The model for the frame: `named`, else the first inside clvr that reads only what the frame has.
 Model model_for(const Options& o, const std::optional<Model>& named, Frame& frame) {
     const auto choose = [&] {
@@ -134,7 +145,7 @@ Model model_for(const Options& o, const std::optional<Model>& named, Frame& fram
                          choice.name);
         else if (!choice.missing.empty())
             spdlog::info("{}: denoised by the model {}; for the one that reads the most it lacks {}", o.input, choice.name,
-                         fmt::join(choice.missing, " "));
+                         layers_of(choice.missing));
         else
             spdlog::info("{}: denoised by the model {}", o.input, choice.name);
         return choice.model;

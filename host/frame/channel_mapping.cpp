@@ -152,15 +152,15 @@ std::vector<std::string> map_known_channels(Frame& frame) {
         } else {
             continue;
         }
-        std::vector<std::string> from, to;
-        for (const auto& [theirs, ours] : pairs) from.push_back(theirs), to.push_back(ours);
-        if (depth && !is_share(frame.at(from.front()))) {
-            said.push_back(fmt::format("{} is not taken as depth.Z: it is no share 0..1", from.front()));
+        const std::string theirs = name.empty() ? pairs.front().first : name + ".*";
+        if (depth && !is_share(frame.at(pairs.front().first))) {
+            said.push_back(fmt::format("{} is not taken as depth.Z: it is no share 0..1", theirs));
             continue;
         }
         take(frame, pairs);
         const auto alike = std::count_if(found.begin(), found.end(), [&](const auto& f) { return plain(f.second) == plain(name); });
-        said.push_back(fmt::format("{} is taken as {}{}", fmt::join(from, " "), fmt::join(to, " "),
+        said.push_back(fmt::format("{} is taken as {}{}", beauty && name.empty() ? "r g b" : theirs,
+                                   beauty ? "R G B" : std::string(pass.name) + ".*",
                                    alike > 1 ? " (several layers have such a name: the first; --map names another)" : ""));
     }
     return said;
