@@ -134,19 +134,19 @@ inline const std::vector<VolumeFormat>& volume_formats() {
              write_hdf5(to / "a.h5", s, false);
              return Written{to / "a.h5:/volume", to / "a.h5"};
          },
-         VolumeFormat::no_geometry, false, 1, 7},
+         VolumeFormat::no_geometry, false, 1, 17},
         {"hdf5_gzip",
          [](const Folder& to, const Sample& s) {
              write_hdf5(to / "a.h5", s, true);
              return Written{to / "a.h5", to / "a.h5"};
          },
-         VolumeFormat::no_geometry, false, 1, 7},
+         VolumeFormat::no_geometry, false, 1, 17},
         {"imaris",
          [](const Folder& to, const Sample& s) {
              write_imaris(to / "a.ims", s);
              return Written{to / "a.ims", to / "a.ims"};
          },
-         VolumeFormat::spacing_and_origin, false, 1, 13},
+         VolumeFormat::spacing_and_origin, false, 1, 37},
         {"raw",
          [](const Folder& to, const Sample& s) {
              write(to / (raw_name(s) + ".json"), sidecar);

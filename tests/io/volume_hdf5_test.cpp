@@ -87,6 +87,7 @@ TEST(VolumeHdf5, AFileOfSeveralDataSetsListsThem) {
     expect_error([&] { read_volume(file + ":/volume/rwa"); }, {"no data set /volume/rwa"});
     expect_error([&] { read_volume(file + ":/empty"); }, {"no data set in /empty"});
     expect_error([&] { read_volume(folder / "gone.h5:/volume"); }, {"no such file"});
+    expect_error([&] { read_volume(file + "/volume/raw"); }, {"is named " + file + ":/volume/raw"});
     expect_error([&] { read_volume(write(folder / "a.nii", nifti(Sample())) + ":/volume"); }, {"a.nii is no HDF5 file"});
 }
 

@@ -80,6 +80,17 @@ TEST(VolumeNiftiForms, WithoutAnyFormTheVoxelSizesAreTaken) {
     expect_error([&] { read_volume(folder / "a.nii"); }, {"0.5 x 0 x 2 (pixdim)"});
 }
 
+TEST(VolumeNiftiForms, AQuaternionALittleTooLongIsARotation) {
+    const Folder folder;
+    NiftiFields f;
+    f.sform = 0, f.qform = 1;
+    f.quatern = {0, 0, 1.001}; // half a turn about z
+    const Voxels v = read_as(folder, f);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) EXPECT_NEAR(v.geometry.direction.row[i][j], i == j, 1e-6);
+    EXPECT_THAT(v.decisions, Contains(HasSubstr("length 1")));
+}
+
 TEST(VolumeNiftiForms, AnUnusableQformGivesWayToTheMatrix) {
     const Folder folder;
     NiftiFields f;

@@ -13,6 +13,14 @@ DatasetPath split_dataset_path(const std::string& path) {
     return {path, {}};
 }
 
+DatasetPath file_within_path(const std::string& path) {
+    std::error_code error;
+    for (auto slash = path.find('/', 1); slash != std::string::npos; slash = path.find('/', slash + 1))
+        if (const std::string file = path.substr(0, slash); std::filesystem::is_regular_file(file, error))
+            return {file, path.substr(slash)};
+    return {path, {}};
+}
+
 std::string join_dataset_path(const DatasetPath& path) { return path.inside.empty() ? path.file : path.file + ":" + path.inside; }
 
 } // namespace clvr

@@ -12,6 +12,8 @@ struct DatasetPath {
 /// Splits at the first ":" behind the name of a file that there is; where there is none, or all of `path` is a file or folder, the whole
 /// is the file.
 DatasetPath split_dataset_path(const std::string& path);
+/// What `path` may mean where a part of it is a file, as in FILE/path/of/dataset; `inside` is empty where no part is.
+DatasetPath file_within_path(const std::string& path);
 /// "FILE:/path", or the file alone.
 std::string join_dataset_path(const DatasetPath& path);
 

@@ -46,9 +46,10 @@ void send(int pipe, Kind kind, const void* from, std::size_t bytes) {
     } while (bytes > 0);
 }
 
-/// No dump, no word on the terminal, no more memory than given; Ctrl-C ends it.
+/// No dump, no word on the terminal, no more memory than given. Ctrl-C and a terminal that goes are the parent's to answer.
 void confine(std::size_t memory_bytes) {
-    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGPIPE, SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_DFL);
+    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGPIPE, SIGTERM}) std::signal(signal, SIG_DFL);
+    for (const int signal : {SIGINT, SIGHUP}) std::signal(signal, SIG_IGN);
     const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);

@@ -36,12 +36,19 @@ Affine sform_of(const NiftiHeader& h) {
     return a;
 }
 
-/// Nothing where the quaternion is longer than 1.
-std::optional<Affine> qform_of(const NiftiHeader& h, const Double3& spacing) {
+/// How far b, c, d of the quaternion are from what a rotation allows: its first part squared, below 0 where they are too long.
+double first_part_squared(const NiftiHeader& h) {
     const auto [b, c, d] = h.quatern;
-    const double rest = 1 - (b * b + c * c + d * d);
-    if (!(rest > -1e-5)) return std::nullopt;
-    const double a = std::sqrt(std::max(rest, 0.0));
+    return 1 - (b * b + c * c + d * d);
+}
+constexpr double rounding = -1e-5, too_long = -1e-2;
+
+/// Nothing where the quaternion is no rotation; one that is a little too long is brought to length 1.
+std::optional<Affine> qform_of(const NiftiHeader& h, const Double3& spacing) {
+    const double rest = first_part_squared(h);
+    if (!(rest > too_long)) return std::nullopt;
+    const double scale = rest > rounding ? 1 : 1 / std::sqrt(1 - rest);
+    const double b = h.quatern[0] * scale, c = h.quatern[1] * scale, d = h.quatern[2] * scale, a = std::sqrt(std::max(rest, 0.0));
     const double handed = h.pixdim[0] < 0 ? -1 : 1;
     Affine q;
     q.axes.row = {{{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
@@ -126,6 +133,8 @@ Affine choose(const NiftiHeader& h, const std::array<std::int64_t, 8>& sizes, co
         if (assumed) remarks.notes.push_back(fmt::format("the voxel size is {}: 1 mm along an axis of one voxel is assumed", pixdim));
     };
     if (h.qform > 0 && qform_usable) {
+        if (first_part_squared(h) <= rounding)
+            remarks.decisions.push_back("the quaternion of the qform is a little longer than 1: taken at length 1");
         say("the qform is taken");
         return *quaternion;
     }

@@ -27,7 +27,7 @@ constexpr const char *archive = "an archive: unpack it, a .npz holds .npy files,
                      *fits = "a FITS file: save its cube as .npy, with Astropy and NumPy",
                      *vdb = "an OpenVDB file: sample its grid into a NumPy array and save it as .npy",
                      *bruker = "Bruker ParaVision data: convert them to NIfTI, with brkraw for instance",
-                     *envi = "an ENVI header: give its voxels as RAW, with --dims and --type",
+                     *envi = "an ENVI or Interfile header: give its voxels as RAW, with --dims and --type",
                      *vol = "a .vol file, which says nothing of its voxels: name it name_WxHxD_type.raw, or give --dims and --type";
 
 } // namespace
@@ -60,6 +60,7 @@ std::string other_kind_of_head(const std::string& head) {
                                8},
                               vdb},
                              {"ENVI", envi},
+                             {"!INTERFILE", envi},
                              {"##TITLE=", bruker}};
     for (const auto& [mark, kind] : marks)
         if (starts_with(head, mark)) return kind;

@@ -75,6 +75,8 @@ Voxels read_any(const std::string& path, const VolumeReadOptions& options) {
         return read_hdf5(path, options);
     }
     const fs::file_status status = fs::status(path, error);
+    if (const DatasetPath meant = file_within_path(path); status.type() == fs::file_type::not_found && !meant.inside.empty())
+        bad_file(path, "{} is a file, not a folder: a data set of an HDF5 file is named {}", meant.file, join_dataset_path(meant));
     if (status.type() == fs::file_type::not_found) bad_file(path, "there is no such file or folder");
     if (error) bad_file(path, "cannot be read: {}", error.message());
     if (fs::is_directory(status)) return read_folder(path, options);
