@@ -5,6 +5,7 @@
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
@@ -39,6 +40,38 @@ json to_json(const Hdf5Volume& h) {
             {"decisions", v.decisions}};
 }
 
+/// The same, as this process understands it.
+struct Told {
+    SampleType type = SampleType::u8;
+    FileDims size{};
+    SampleOrder order{};
+    Voxels described; ///< all but dims and bytes
+};
+
+Told parse(const std::string& text, const std::string& path) {
+    try {
+        const json j = json::parse(text);
+        Told told;
+        told.type = static_cast<SampleType>(j.at("type").get<int>());
+        told.size = j.at("size");
+        told.order.stride = j.at("stride");
+        Voxels& v = told.described;
+        v.source = path;
+        v.format = j.at("format");
+        v.type = kept_type(told.type);
+        v.geometry.spacing = j.at("spacing");
+        v.geometry.origin = j.at("origin");
+        for (std::size_t i = 0; i < 9; ++i) v.geometry.direction.row[i / 3][i % 3] = j.at("direction").at(i);
+        v.slope = j.at("slope");
+        v.intercept = j.at("intercept");
+        v.notes = j.at("notes");
+        v.decisions = j.at("decisions");
+        return told;
+    } catch (const json::exception&) {
+        bad_file(path, "libhdf5 cannot read it: the file is damaged");
+    }
+}
+
 /// Sends samples of the block as f32, each scaled by its entry of the slowest axis.
 void send_scaled(const Hdf5File& file, const Hdf5Volume& h, const DecodingChild::Send& send) {
     const SampleType type = *h.data.type;
@@ -67,6 +100,8 @@ void send_volume(const DatasetPath& path, const VolumeReadOptions& options, cons
                          : whole && is_minc(file) ? minc_volume(file, options)
                                                   : plain_hdf5_volume(file, path.inside, options);
     check_geometry(h.described.geometry, path.file);
+    if (!std::isfinite(h.described.slope) || !std::isfinite(h.described.intercept))
+        bad_file(path.file, "its scale of values is not finite");
     const std::string text = to_json(h).dump(-1, ' ', false, json::error_handler_t::replace);
     const std::uint64_t length = text.size();
     send(&length, sizeof length);
@@ -89,31 +124,15 @@ Voxels read_hdf5(const std::string& path, const VolumeReadOptions& options) {
     std::string text;
     if (child.read(&length, sizeof length) == sizeof length && length <= longest) text.resize(length);
     child.read(text.data(), text.size());
-    const json told = json::parse(text, nullptr, false);
-    if (!told.is_object()) bad_file(place.file, "libhdf5 cannot read it: the file is damaged");
-
-    const auto type = static_cast<SampleType>(told.at("type").get<int>());
-    Voxels v;
-    v.source = path;
-    v.format = told.at("format");
-    v.type = kept_type(type);
-    v.geometry.spacing = told.at("spacing");
-    v.geometry.origin = told.at("origin");
-    for (std::size_t i = 0; i < 9; ++i) v.geometry.direction.row[i / 3][i % 3] = told.at("direction").at(i);
-    v.slope = told.at("slope");
-    v.intercept = told.at("intercept");
-    v.notes = told.at("notes");
-    v.decisions = told.at("decisions");
-    check_geometry(v.geometry, path);
-    const FileDims size = told.at("size");
-    const SampleOrder order{0, told.at("stride")};
-    const CheckedDims dims = check_dims(size, 1, type, path);
+    const Told told = parse(text, path);
+    const CheckedDims dims = check_dims(told.size, 1, told.type, path);
+    Voxels v = told.described;
     v.dims = dims.dims;
     const auto read = [&](void* to, std::size_t bytes) { return child.read(to, bytes); };
-    if (order.stride == SampleOrder::plain(v.dims).stride)
-        read_samples(read, type, false, v);
+    if (told.order.stride == SampleOrder::plain(v.dims).stride)
+        read_samples(read, told.type, false, v);
     else
-        read_reordered(read, type, false, dims.bytes / sample_bytes(type), order, v);
+        read_reordered(read, told.type, false, dims.bytes / sample_bytes(told.type), told.order, v);
     return v;
 }
 
