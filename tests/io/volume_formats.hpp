@@ -2,6 +2,10 @@
 #pragma once
 #include "host/io/volume/volume_file.hpp"
 #include "tests/io/dicom_writers.hpp"
+#include "tests/io/hdf5_writers.hpp"
+#include "tests/io/mgh_writers.hpp"
+#include "tests/io/mrc_writers.hpp"
+#include "tests/io/numpy_writers.hpp"
 #include "tests/io/text_header_writers.hpp"
 #include "tests/io/tiff_writers.hpp"
 #include "tests/io/volume_writers.hpp"
@@ -180,6 +184,37 @@ inline const std::vector<VolumeFormat>& volume_formats() {
          }},
         {"dicom_mosaic", [](const Folder& to, const Sample& s) { return single(to / "a.ima", dicom_file(mosaic_set(s))); }},
         {"dicom_rle", [](const Folder& to, const Sample& s) { return dicom_folder(to, s, true); }, VolumeFormat::geometry, false, 1, 7},
+        {"numpy", [](const Folder& to, const Sample& s) { return single(to / "a.npy", numpy(s)); }, VolumeFormat::no_geometry},
+        {"numpy_gzip", [](const Folder& to, const Sample& s) { return single(to / "a.npy.gz", deflated(numpy(s))); },
+         VolumeFormat::no_geometry, true},
+        {"mrc", [](const Folder& to, const Sample& s) { return single(to / "a.mrc", mrc(s)); }, VolumeFormat::spacing_and_origin},
+        {"mrc_big_endian",
+         [](const Folder& to, const Sample& s) {
+             MrcFields f;
+             f.big = true, f.extended_bytes = 80;
+             return single(to / "a.map", mrc(s, f));
+         },
+         VolumeFormat::spacing_and_origin},
+        {"mgh", [](const Folder& to, const Sample& s) { return single(to / "a.mgh", mgh(s)); }},
+        {"mgz", [](const Folder& to, const Sample& s) { return single(to / "a.mgz", deflated(mgh(s))); }, VolumeFormat::geometry, true},
+        {"hdf5",
+         [](const Folder& to, const Sample& s) {
+             write_hdf5(to / "a.h5", s, false);
+             return Written{to / "a.h5:/volume", to / "a.h5"};
+         },
+         VolumeFormat::no_geometry, false, 1, 17},
+        {"hdf5_gzip",
+         [](const Folder& to, const Sample& s) {
+             write_hdf5(to / "a.h5", s, true);
+             return Written{to / "a.h5", to / "a.h5"};
+         },
+         VolumeFormat::no_geometry, false, 1, 17},
+        {"imaris",
+         [](const Folder& to, const Sample& s) {
+             write_imaris(to / "a.ims", s);
+             return Written{to / "a.ims", to / "a.ims"};
+         },
+         VolumeFormat::spacing_and_origin, false, 1, 37},
         {"raw",
          [](const Folder& to, const Sample& s) {
              write(to / (raw_name(s) + ".json"), sidecar);

@@ -1,8 +1,10 @@
 #include "host/io/volume/volume_file.hpp"
 #include "host/io/byte_stream.hpp"
+#include "host/io/volume/dataset_path.hpp"
 #include "host/io/volume/folder.hpp"
 #include "host/io/volume/format.hpp"
 #include "host/io/volume/header_text.hpp"
+#include "host/io/volume/not_volumes.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
 #include "host/io/volume/slices.hpp"
@@ -89,6 +91,7 @@ bool has_volume_below(const std::string& path) {
 /// A DICOM series where any file is DICOM, else a stack of slices. Where nothing of a volume lies on top, the folders inside are searched
 /// by themselves.
 Voxels read_folder(const std::string& path, const VolumeReadOptions& options) {
+    if (const std::string other = other_kind_of_folder(path); !other.empty()) bad_file(path, "this is {}", other);
     const FolderFiles all = files_in(path, options.recursive);
     const auto read = [&]() -> Voxels {
         std::map<VolumeFormat, std::vector<std::string>> files;
@@ -122,11 +125,27 @@ const std::map<VolumeFormat, Reader> readers{
     {VolumeFormat::nifti, read_nifti},    {VolumeFormat::nrrd, read_nrrd},      {VolumeFormat::metaimage, read_metaimage},
     {VolumeFormat::dicom, read_dicom},    {VolumeFormat::tiff, read_tiff_file}, {VolumeFormat::png, read_png_file},
     {VolumeFormat::jpeg, read_jpeg_file}, {VolumeFormat::vtk, read_vtk},        {VolumeFormat::vti, read_vti},
-    {VolumeFormat::raw, read_raw}};
+    {VolumeFormat::numpy, read_numpy},    {VolumeFormat::mrc, read_mrc},        {VolumeFormat::mgh, read_mgh},
+    {VolumeFormat::hdf5, read_hdf5},      {VolumeFormat::raw, read_raw}};
+
+/// Formats that --spacing speaks to: theirs may have none.
+bool takes_spacing(const std::string& format) {
+    for (const char* taker : {"RAW", "TIFF", "PNG", "JPEG", "NumPy", "MRC", "HDF5", "Imaris"})
+        if (starts_with(format, taker)) return true;
+    return false;
+}
 
 Voxels read_any(const std::string& path, const VolumeReadOptions& options) {
     std::error_code error;
+    const DatasetPath place = split_dataset_path(path);
+    if (!place.inside.empty()) {
+        if (format_of_file(place.file, options) != VolumeFormat::hdf5)
+            bad_file(path, "{} is no HDF5 file: only those hold data sets that are named behind a colon", place.file);
+        return read_hdf5(path, options);
+    }
     const fs::file_status status = fs::status(path, error);
+    if (const DatasetPath meant = file_within_path(path); status.type() == fs::file_type::not_found && !meant.inside.empty())
+        bad_file(path, "{} is a file, not a folder: a data set of an HDF5 file is named {}", meant.file, join_dataset_path(meant));
     if (status.type() == fs::file_type::not_found) bad_file(path, "there is no such file or folder");
     if (error) bad_file(path, "cannot be read: {}", error.message());
     if (fs::is_directory(status)) return read_folder(path, options);
@@ -144,11 +163,10 @@ Voxels read_volume(const std::string& path, const VolumeReadOptions& options) {
             v.geometry.origin[i] += 0.0;
             for (double& x : v.geometry.direction.row[i]) x += 0.0;
         }
-        const bool raw = v.format == "RAW",
-                   picture = starts_with(v.format, "TIFF") || starts_with(v.format, "PNG") || starts_with(v.format, "JPEG");
+        const bool raw = v.format == "RAW";
         if (!raw && (!options.type.empty() || !options.endian.empty()))
             v.notes.push_back("--type and --endian are for RAW files: the file's own were taken");
-        if (!raw && !picture && options.spacing) v.notes.push_back("--spacing is for RAW, TIFF, PNG and JPEG: the file's own was taken");
+        if (options.spacing && !takes_spacing(v.format)) v.notes.push_back("--spacing is not for this format: the file's own was taken");
         return v;
     } catch (const fs::filesystem_error& e) {
         throw Error(ErrorKind::input, fmt::format("cannot be read: {}", e.code().message()), path);
