@@ -1,6 +1,6 @@
 // DICOM: which slices make a volume, in which order, and what is refused.
 #include "host/io/volume/volume_file.hpp"
-#include "tests/io/volume_writers.hpp"
+#include "tests/io/dicom_writers.hpp"
 
 #include <gmock/gmock.h>
 
@@ -134,6 +134,31 @@ TEST_F(VolumeDicom, ManyTimesAtEveryPlaceAreFrames) {
     EXPECT_EQ(read().data<std::int16_t>()[20], 0x0101);
     options.frame = 2;
     expect_error([&] { read(); }, {"2 frames"});
+}
+
+TEST_F(VolumeDicom, EchoesAndTypesAreNeverMixed) {
+    const auto put_typed = [&](const std::string& name, int k, int number, const char* type, std::int16_t value) {
+        DicomSet d = dicom_slice_set(s, k);
+        d.text(0x00080008, "CS", type).text(0x00200013, "IS", std::to_string(number)).text(0x00080018, "UI", "1.2.3." + name);
+        if (value != 0) d.raw(0x7fe00010, "OW", bytes_of(std::vector<std::int16_t>(20, value)));
+        write(folder / ("series/" + name), dicom_file(d));
+    };
+    for (int k = 0; k < s.dims[2]; ++k) { // numbers alternate: by number alone, the types would mix
+        put_typed(fmt::format("w{}", k), k, 2 * k + k % 2, "ORIGINAL\\PRIMARY\\WATER", 0);
+        put_typed(fmt::format("f{}", k), k, 2 * k + 1 - k % 2, "ORIGINAL\\PRIMARY\\FAT", 7);
+    }
+    EXPECT_TRUE(is_sample(read()));
+    EXPECT_THAT(read().notes, Contains(::testing::AllOf(HasSubstr("2 times"), HasSubstr("WATER, ORIGINAL\\PRIMARY\\FAT"))));
+    options.frame = 1;
+    EXPECT_EQ(read().data<std::int16_t>()[37], 7);
+    options.frame = 0;
+    for (const int k : {3, 4, 5, 6, 7}) std::filesystem::remove(folder / fmt::format("series/f{}", k)); // of the one at a few places only
+    EXPECT_TRUE(is_sample(read()));
+    EXPECT_THAT(read().notes, Contains(HasSubstr("3 slices of another acquisition, echo or type")));
+    std::filesystem::remove(folder / "series/w0"); // and where the other is not
+    const Voxels v = read();
+    EXPECT_EQ(v.dims[2], 7);
+    EXPECT_TRUE(std::equal(s.voxels.begin() + 20, s.voxels.end(), v.data<std::int16_t>()));
 }
 
 TEST_F(VolumeDicom, GapsAreRefusedOrInterpolated) {

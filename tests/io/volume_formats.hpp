@@ -173,16 +173,20 @@ inline const std::vector<VolumeFormat>& volume_formats() {
          VolumeFormat::no_geometry},
         {"dicom", [](const Folder& to, const Sample& s) { return dicom_folder(to, s, false); }},
         {"dicom_enhanced",
-         [](const Folder& to, const Sample& s) { return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)))); }},
+         [](const Folder& to, const Sample& s) { return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)))); },
+         VolumeFormat::geometry, false, 1, 5},
         {"dicom_enhanced_implicit",
          [](const Folder& to, const Sample& s) {
              return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)), DicomSyntax{true}, true));
-         }},
+         },
+         VolumeFormat::geometry, false, 1, 5},
         {"dicom_enhanced_deflated",
          [](const Folder& to, const Sample& s) {
              return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)), DicomSyntax{false, false, true}));
-         }},
-        {"dicom_mosaic", [](const Folder& to, const Sample& s) { return single(to / "a.ima", dicom_file(mosaic_set(s))); }},
+         },
+         VolumeFormat::geometry, false, 1, 5},
+        {"dicom_mosaic", [](const Folder& to, const Sample& s) { return single(to / "a.ima", dicom_file(mosaic_set(s))); },
+         VolumeFormat::geometry, false, 1, 5},
         {"dicom_rle", [](const Folder& to, const Sample& s) { return dicom_folder(to, s, true); }, VolumeFormat::geometry, false, 1, 7},
         {"numpy", [](const Folder& to, const Sample& s) { return single(to / "a.npy", numpy(s)); }, VolumeFormat::no_geometry},
         {"numpy_gzip", [](const Folder& to, const Sample& s) { return single(to / "a.npy.gz", deflated(numpy(s))); },

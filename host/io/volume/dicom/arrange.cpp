@@ -81,7 +81,7 @@ void say_steps(const std::vector<SlicesAtPlace>& places, const SliceLattice& lat
     }
     if (greatest - least > same_place_mm)
         a.decisions.push_back(fmt::format("slice distance {:.6g} mm from the whole span (single distances are {:.6g} to {:.6g} mm)",
-                                          a.geometry.spacing[2], least, greatest));
+                                          lattice.step, least, greatest));
 }
 
 /// Origin, spacing and direction along the slices; notes what is unusual.
@@ -122,8 +122,8 @@ Arrangement arrange(const Frames& frames, const std::vector<std::size_t>& stack,
     const DicomPlace& first = frames[stack.front()].place;
     const Double3 normal = normal_of(first);
     std::vector<SlicesAtPlace> places = places_of(frames, stack, normal, a.notes);
-    a.places = places.size();
     const FrameChoice choice = choose_frame(places, frames, frame, where);
+    a.places = places.size();
     const std::vector<std::size_t>& chosen = choice.slices;
     a.notes.insert(a.notes.end(), choice.notes.begin(), choice.notes.end());
     if (places.size() == 1) {

@@ -91,6 +91,23 @@ bool keep_whole_set(std::vector<SlicesAtPlace>& places, const Frames& frames) {
     return false;
 }
 
+/// Where no set is at every place: echoes and types are not mixed, those with the most places stay. Returns whether any went.
+bool keep_largest_kind(std::vector<SlicesAtPlace>& places, const Frames& frames) {
+    std::map<Labels, std::size_t> at; // how many places have it
+    for (const SlicesAtPlace& p : places) {
+        std::set<Labels> here;
+        for (const std::size_t i : p.slices) here.insert(frames[i].labels);
+        for (const Labels& labels : here) ++at[labels];
+    }
+    if (at.size() < 2) return false;
+    const Labels kept = std::max_element(at.begin(), at.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->first;
+    for (SlicesAtPlace& p : places)
+        p.slices.erase(std::remove_if(p.slices.begin(), p.slices.end(), [&](std::size_t i) { return frames[i].labels != kept; }),
+                       p.slices.end());
+    places.erase(std::remove_if(places.begin(), places.end(), [](const SlicesAtPlace& p) { return p.slices.empty(); }), places.end());
+    return true;
+}
+
 } // namespace
 
 std::vector<SlicesAtPlace> places_of(const Frames& frames, std::vector<std::size_t> stack, const Double3& normal,
@@ -133,7 +150,7 @@ FrameChoice choose_frame(std::vector<SlicesAtPlace>& places, const Frames& frame
                            [&](const SlicesAtPlace& p) { return p.slices.size() == places.front().slices.size(); });
     };
     const std::size_t before = slices_in(places);
-    if (!is_regular() && keep_whole_set(places, frames) && slices_in(places) < before)
+    if (!is_regular() && (keep_whole_set(places, frames) || keep_largest_kind(places, frames)) && slices_in(places) < before)
         a.notes.push_back(fmt::format("{} slices of another acquisition, echo or type, which are not at every place, were left out",
                                       before - slices_in(places)));
     const bool regular = is_regular();

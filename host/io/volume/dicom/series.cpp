@@ -177,7 +177,7 @@ Voxels volume_of(const Scan& found, const std::string& path, const VolumeReadOpt
         throw Error(e.kind(), std::string(e.what()) + (series.frames.empty() ? "" : " (--allow-gaps leaves the file out)"), e.where());
     }
     if (chosen.stacks > 1)
-        v.notes.push_back(fmt::format("{} of {} slices have another size or orientation, or are of another stack, and were left out",
+        v.notes.push_back(fmt::format("{} of {} slices have another size or orientation, pixel spacing, type or stack, and were left out",
                                       series.frames.size() - chosen.stack.size(), series.frames.size()));
     const Arrangement a = arrange(series.frames, chosen.stack, options.frame, options.allow_gaps, path);
     add(v.notes, a.notes);
