@@ -80,11 +80,12 @@ TEST(VolumeHdf5, AFileOfSeveralDataSetsListsThem) {
     expect_error([&] { read_volume(file); },
                  {"holds 3 data sets", file + ":/volume/raw (3 x 4 x 5 i16)", file + ":/volume/mask (3 x 4 x 5 u8)"});
     expect_error([&] { read_volume(file + ":/volume"); }, {"2 data sets"});
+    expect_error([&] { read_volume(file + ":"); }, {"3 data sets"});
     const Voxels v = read_volume(file + ":/other");
     EXPECT_EQ(v.dims, (Int3{5, 4, 2}));
     EXPECT_THAT(v.decisions, Contains(HasSubstr("/other/only, the only one")));
     EXPECT_EQ(read_volume(file + ":/table").dims, (Int3{4, 3, 1}));
-    expect_error([&] { read_volume(file + ":/volume/rwa"); }, {"no data set /volume/rwa"});
+    expect_error([&] { read_volume(file + ":/volume/rwa"); }, {"no data set /volume/rwa", file + ":/volume/raw (3 x 4 x 5 i16)"});
     expect_error([&] { read_volume(file + ":/empty"); }, {"no data set in /empty"});
     expect_error([&] { read_volume(folder / "gone.h5:/volume"); }, {"no such file"});
     expect_error([&] { read_volume(file + "/volume/raw"); }, {"is named " + file + ":/volume/raw"});

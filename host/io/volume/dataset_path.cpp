@@ -9,7 +9,8 @@ DatasetPath split_dataset_path(const std::string& path) {
     std::error_code error;
     if (fs::exists(path, error)) return {path, {}};
     for (auto colon = path.find(':'); colon != std::string::npos; colon = path.find(':', colon + 1))
-        if (const std::string file = path.substr(0, colon); fs::is_regular_file(file, error)) return {file, path.substr(colon + 1)};
+        if (const std::string file = path.substr(0, colon); fs::is_regular_file(file, error))
+            return {file, colon + 1 < path.size() ? path.substr(colon + 1) : "/"};
     return {path, {}};
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 enum class Role { x, y, z, frame, channel, unknown };
 
-std::string shape_of(const Hdf5Dataset& d) { return fmt::format("{}", fmt::join(d.dims, " x ")); }
+std::string shape_of(const Hdf5Dataset& d) { return d.dims.empty() ? "one value" : fmt::format("{}", fmt::join(d.dims, " x ")); }
 
 /// What a label means: "z", "time", "c".
 Role role_named(const std::string& label) {
@@ -110,27 +110,32 @@ void say_unknown_sizes(const Hdf5File& file, Hdf5Volume& h) {
                 fmt::format("the attribute {} of data set {} is not taken as voxel size: its unit is not known", name, h.data.path));
 }
 
+/// "FILE:/a (3 x 4 x 5 u16), FILE:/b (...)": what to name.
+std::string list_of(const Hdf5File& file, const std::vector<Hdf5Dataset>& sets) {
+    constexpr std::size_t most = 12;
+    std::string list;
+    for (std::size_t i = 0; i < sets.size() && i < most; ++i)
+        list += fmt::format("{}{}:{} ({} {})", i == 0 ? "" : ", ", file.path(), sets[i].path, shape_of(sets[i]), sets[i].type_name);
+    return sets.size() > most ? list + fmt::format(" and {} more", sets.size() - most) : list;
+}
+
 Hdf5Dataset find_dataset(const Hdf5File& file, const std::string& inside, std::vector<std::string>& decisions) {
     const std::string name = inside.empty() || inside.front() == '/' ? inside : "/" + inside;
     if (!name.empty() && file.is_dataset(name)) return file.dataset(name);
-    const std::string group = name.empty() ? "/" : name;
-    if (group != "/" && !file.is_group(group))
-        bad_file(file.path(), "there is no data set {} in it; clvr info {} lists all", name, file.path());
-    std::vector<Hdf5Dataset> all = file.datasets(group), volumes;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(volumes), [](const Hdf5Dataset& d) { return d.type && d.dims.size() >= 3; });
-    if (volumes.size() == 1) {
-        decisions.push_back(fmt::format("data set {}, the only one of three axes", volumes.front().path));
-        return volumes.front();
-    }
-    if (volumes.empty() && all.empty()) bad_file(file.path(), "there is no data set in {}", group);
-    constexpr std::size_t most = 12;
-    std::string list;
-    const std::vector<Hdf5Dataset>& listed = volumes.empty() ? all : volumes;
-    for (std::size_t i = 0; i < listed.size() && i < most; ++i)
-        list += fmt::format("{}{}:{} ({} {})", i == 0 ? "" : ", ", file.path(), listed[i].path, shape_of(listed[i]), listed[i].type_name);
-    if (listed.size() > most) list += fmt::format(" and {} more", listed.size() - most);
-    if (volumes.empty()) bad_file(file.path(), "there is no data set of three axes in {}, only {}", group, list);
-    bad_file(file.path(), "{} holds {} data sets, name one of them: {}", group == "/" ? "the file" : group, volumes.size(), list);
+    const bool group = name.empty() || file.is_group(name);
+    const std::string place = group && !name.empty() ? name : "/";
+    std::vector<Hdf5Dataset> all = file.datasets(place), volumes;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(volumes), [](const Hdf5Dataset& d) {
+        return d.type && d.dims.size() >= 3 && std::find(d.dims.begin(), d.dims.end(), 0) == d.dims.end();
+    });
+    const std::string list = list_of(file, volumes.empty() ? all : volumes);
+    if (!group) bad_file(file.path(), "there is no data set {} in it{}{}", name, list.empty() ? "" : ", but ", list);
+    if (all.empty()) bad_file(file.path(), "there is no data set in {}", place);
+    if (volumes.empty()) bad_file(file.path(), "there is no data set of numbers on three axes in {}, only {}", place, list);
+    if (volumes.size() > 1)
+        bad_file(file.path(), "{} holds {} data sets, name one of them: {}", place == "/" ? "the file" : place, volumes.size(), list);
+    decisions.push_back(fmt::format("data set {}, the only one of three axes", volumes.front().path));
+    return volumes.front();
 }
 
 } // namespace
