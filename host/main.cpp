@@ -1,23 +1,17 @@
-// The `clvr` program: registers the subcommands, catches Error once.
+// The `clvr` program: registers the subcommands.
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "runtime/error.hpp"
+#include "runtime/program_end.hpp"
 #include "runtime/source.hpp"
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <new>
 #include <string>
 
 namespace {
-
-/// Prints "clvr: <what>" and gives the exit code back.
-int report(const std::string& what, clvr::ErrorKind kind) {
-    std::fprintf(stderr, "clvr: %s\n", what.c_str());
-    return static_cast<int>(kind);
-}
 
 /// Everything that is no result goes to stderr: "clvr: warning: ..." unless --quiet, details with --verbose.
 void log_to_stderr() {
@@ -27,12 +21,15 @@ void log_to_stderr() {
 }
 
 int run(int argc, char** argv) {
+    log_to_stderr();
     CLI::App app("clvr renders scientific and medical volumes by path tracing on any OpenCL device.");
     app.name("clvr");
     app.fallthrough();            // global options are understood after the subcommand, too
     app.require_subcommand(0, 1); // none is told apart below from an unknown one
     app.set_version_flag("--version", CLVR_VERSION);
-    app.set_config("--config", "", "Read options from an INI or TOML file, those of a subcommand in its [section]")->type_name("FILE");
+    clvr::reads_files(
+        app.set_config("--config", "", "Read options from an INI or TOML file, those of a subcommand in its [section]")->type_name("FILE"));
+    app.parse_complete_callback([&app] { clvr::check_files(app); });
     app.allow_config_extras(CLI::config_extras_mode::error);
     app.add_option_function<std::string>("--kernel-dir", clvr::set_kernel_dir,
                                          "Folder whose OpenCL files replace the built-in ones of the same path")
@@ -60,22 +57,11 @@ int run(int argc, char** argv) {
         if (error.get_exit_code() == 0) return app.exit(error); // help and version
         std::string what = error.what();
         std::replace(what.begin(), what.end(), '\n', ' ');
-        return report(what + " (see clvr --help)", clvr::ErrorKind::usage);
+        throw clvr::Error(clvr::ErrorKind::usage, what + " (see clvr --help)");
     }
     return 0;
 }
 
 } // namespace
 
-int main(int argc, char** argv) {
-    log_to_stderr();
-    try {
-        return run(argc, argv);
-    } catch (const clvr::Error& error) {
-        return report(error.line(), error.kind());
-    } catch (const std::bad_alloc&) {
-        return report("out of memory; try a smaller picture or volume", clvr::ErrorKind::memory);
-    } catch (const std::exception& error) {
-        return report(std::string("internal error: ") + error.what(), clvr::ErrorKind::internal);
-    }
-}
+int main(int argc, char** argv) { return clvr::run_program("clvr", run, argc, argv); }

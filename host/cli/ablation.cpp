@@ -4,11 +4,12 @@
 #include "host/cli/command_text.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/source_commit.hpp"
 #include "host/cli/stage_display.hpp"
 #include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/signals.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -67,9 +68,9 @@ void add_ablation_command(CLI::App& app) {
         "Train the network with fewer or other input channels and switches, and measure each; goes on where it was interrupted");
     auto o = std::make_shared<Options>();
     AblationSettings& s = o->settings;
-    c->add_option("DIR", s.train, "Folders of training pairs");
-    c->add_option("--test", s.test, "Folder of test pairs (may be given again)")->type_name("DIR");
-    c->add_option("-o,--output", o->folder, "Folder to fill")->type_name("DIR");
+    reads_files(c->add_option("DIR", s.train, "Folders of training pairs"));
+    reads_files(c->add_option("--test", s.test, "Folder of test pairs (may be given again)")->type_name("DIR"));
+    writes_files(c->add_option("-o,--output", o->folder, "Folder to fill")->type_name("DIR"), ablation_files);
     c->add_option("--spp", s.spp, "Measure at the noisy frames of these samples per pixel [1,4]")->type_name("LIST")->delimiter(',');
     std::string names;
     for (const AblationRow& row : ablation_rows()) names += (names.empty() ? "" : ", ") + row.name;

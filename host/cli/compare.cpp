@@ -1,5 +1,6 @@
 // clvr compare: how far a picture is from its reference.
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/frame/error_pictures.hpp"
 #include "host/frame/metrics.hpp"
 #include "host/io/picture/frame_file.hpp"
@@ -77,11 +78,14 @@ void compare(const Options& o) {
 void add_compare_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("compare", "PSNR, SSIM, RMSE, SMAPE, relMSE and FLIP of a picture against its reference");
     auto o = std::make_shared<Options>();
-    c->add_option("A", o->image, "Picture (.exr or .png)")->required();
-    c->add_option("B", o->reference, "Reference (.exr or .png), as large")->required();
+    reads_files(c->add_option("A", o->image, "Picture (.exr or .png)")->required());
+    reads_files(c->add_option("B", o->reference, "Reference (.exr or .png), as large")->required());
     c->add_option("--tonemap", o->tonemap.curve, "Compare EXR files as filmic, aces or reinhard would show them [none: linear]");
     c->add_option("--exposure", o->tonemap.exposure, "Exposure before that, in stops [0]");
-    c->add_option("--map", o->map, "Also write error pictures: NAME.flip.png and NAME.difference.png")->type_name("NAME.png");
+    writes_files(c->add_option("--map", o->map, "Also write error pictures: NAME.flip.png and NAME.difference.png")->type_name("NAME.png"),
+                 [](const std::string& name) {
+                     return std::vector{beside(name, "flip"), beside(name, "difference")};
+                 });
     c->add_flag("--json", o->json, "Write JSON");
     c->callback([o] { compare(*o); });
 }

@@ -1,7 +1,7 @@
 // clvr dataset: volumes that others publish, and volumes that clvr computes.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/volume_options.hpp"
 #include "host/dataset/download.hpp"
@@ -9,6 +9,7 @@
 #include "host/io/volume/volume_file.hpp"
 #include "host/volume/phantom.hpp"
 #include "runtime/error.hpp"
+#include "runtime/signals.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -68,6 +69,15 @@ void info(const Options& o) {
     fmt::print("  view      --azimuth {} --elevation {} --zoom {}{}\n", d.azimuth, d.elevation, d.zoom,
                d.transfer_function.empty() ? "" : " --tf " + d.transfer_function);
     if (!d.computed.empty()) fmt::print("  stand-in  clvr dataset make {}\n", d.computed);
+}
+
+/// What any download into the folder may write.
+std::vector<std::string> fetched_files(const std::string& folder) {
+    std::vector<std::string> all;
+    for (const Dataset& d : datasets())
+        if (!d.url.empty())
+            for (const std::string& file : download_files((fs::path(folder) / d.file_name()).string())) all.push_back(file);
+    return all;
 }
 
 void fetch(const Options& o) {
@@ -130,12 +140,12 @@ void add_dataset_command(CLI::App& app) {
 
     CLI::App* f = c->add_subcommand("fetch", "Download a published volume; goes on where it was interrupted, checks size and checksum");
     f->add_option("NAME", o->name, "As listed")->required();
-    f->add_option("--dir", o->folder, "Folder [.]");
+    writes_files(f->add_option("--dir", o->folder, "Folder [.]")->type_name("DIR"), fetched_files);
     f->callback([o] { fetch(*o); });
 
     CLI::App* m = c->add_subcommand("make", "Compute a volume: the same bits on every device");
     m->add_option("NAME", o->name, fmt::format("{}", fmt::join(phantom_names(), ", ")))->required();
-    m->add_option("-o,--output", o->output, "File to write (.nii.gz or .nii)")->type_name("FILE");
+    writes_files(m->add_option("-o,--output", o->output, "File to write (.nii.gz or .nii)")->type_name("FILE"));
     m->add_option("--dims", o->dims, "Voxels [those of the published volume that it is like, else its own]")->type_name("XxYxZ");
     m->add_option("--type", o->type, "u8, i8, u16, i16 or f32 [as --dims]");
     m->add_option("--seed", o->seed, "Of growth, texture and noise [0]");

@@ -1,7 +1,9 @@
 // clvr denoise: a noisy frame to a clean one.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/denoise/denoiser.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/render/scene.hpp"
@@ -11,6 +13,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <array>
 #include <filesystem>
 
 namespace clvr {
@@ -67,24 +70,36 @@ DenoiserView view_of(const std::vector<std::string>& names) {
     return view;
 }
 
-/// Writes each shown channel as a picture beside `output`: out.guide.1.png, out.level1.png.
-void write_shown(const Frame& frame, const std::string& output, const Tonemap& tonemap) {
+/// A picture of what the network made, beside the output: out.guide.1.png, out.level1.png.
+struct Shown {
+    std::string path;
+    std::array<std::string, 3> channels; ///< shown as red, green, blue
+    bool is_light = false;               ///< for the tone map
+};
+
+std::vector<Shown> shown_of(const Frame& frame, const std::string& output) {
     const auto path = [&](const std::string& name) {
         const std::filesystem::path p(output);
         return (p.parent_path() / (p.stem().string() + "." + name + ".png")).string();
     };
-    Frame picture;
-    picture.width = frame.width, picture.height = frame.height;
+    std::vector<Shown> shown;
     for (const auto& [name, values] : frame.channels) {
         if (name.rfind("guide.", 0) == 0 || name.rfind("weight.", 0) == 0) {
-            for (const char* c : {"R", "G", "B"}) picture.channels[c] = values;
-            write_png(picture, {"none", 0}, path(name));
+            shown.push_back({path(name), {name, name, name}, false});
         } else if (name.rfind("level", 0) == 0 && name.size() > 2 && name.substr(name.size() - 2) == ".R") {
             const std::string level = name.substr(0, name.size() - 2);
-            for (const char* c : {"R", "G", "B"}) picture.channels[c] = frame.at(level + "." + c);
-            write_png(picture, tonemap, path(level));
+            shown.push_back({path(level), {level + ".R", level + ".G", level + ".B"}, true});
         }
     }
+    return shown;
+}
+
+void write_shown(const Frame& frame, const Shown& shown, const Tonemap& tonemap) {
+    Frame picture;
+    picture.width = frame.width, picture.height = frame.height;
+    const char* const colours[] = {"R", "G", "B"};
+    for (std::size_t c = 0; c < 3; ++c) picture.channels[colours[c]] = frame.at(shown.channels[c]);
+    write_png(picture, shown.is_light ? tonemap : Tonemap{"none", 0}, shown.path);
 }
 
 void denoise(const Options& o) {
@@ -110,8 +125,11 @@ void denoise(const Options& o) {
         throw e.kind() == ErrorKind::input ? Error(e.kind(), e.what(), o.input) : e;
     }
     if (repaired > 0) spdlog::warn("{}: {} values are not finite; taken as 0", o.input, repaired);
+    std::vector<Shown> shown;
+    if (!o.show.empty()) shown = shown_of(frame, o.outputs.front());
+    for (const Shown& picture : shown) will_write(picture.path, "--show"); // their names come from the model
     for (const auto& path : o.outputs) write_frame(frame, o.tonemap, path);
-    if (!o.show.empty()) write_shown(frame, o.outputs.front(), o.tonemap);
+    for (const Shown& picture : shown) write_shown(frame, picture, o.tonemap);
     print_profiles(o.device, {devices.front()});
 }
 
@@ -120,9 +138,10 @@ void denoise(const Options& o) {
 void add_denoise_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("denoise", "Denoise a rendered frame (EXR) with a trained network");
     auto o = std::make_shared<Options>();
-    c->add_option("IN", o->input, "Noisy frame (.exr) with the channels that the model names")->required();
-    c->add_option("-o,--output", o->outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
-    c->add_option("--model", o->model, "Trained network (.safetensors) [the one inside clvr]")->type_name("FILE");
+    reads_files(c->add_option("IN", o->input, "Noisy frame (.exr) with the channels that the model names")->required());
+    writes_files(c->add_option("-o,--output", o->outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")
+                     ->type_name("FILE"));
+    reads_files(c->add_option("--model", o->model, "Trained network (.safetensors) [the one inside clvr]")->type_name("FILE"));
     c->add_option("--spp", o->spp, "Samples per pixel of a frame that does not say it (another renderer's)");
     c->add_option("--map", o->map,
                   "Take another renderer's channels: albedo=DiffCol, depth.Z=Depth.V, beauty=Combined (may be given again)")

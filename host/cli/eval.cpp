@@ -1,10 +1,12 @@
 // clvr eval: what denoisers reach on a folder of test pairs.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/eval/evaluation_json.hpp"
 #include "host/eval/report.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/train/trainer.hpp"
@@ -70,7 +72,9 @@ void eval(Options o) {
     for (std::size_t k = 0; k < o.models.size(); ++k) {
         models.emplace_back(names[k], read_model(o.models[k]));
         const std::string csv = training_csv(o.models[k]);
-        if (fs::is_regular_file(csv)) trainings.emplace_back(names[k], read_text(csv));
+        if (!fs::is_regular_file(csv)) continue;
+        will_read(csv);
+        trainings.emplace_back(names[k], read_text(csv));
     }
     Device device = open_device(o.device);
     Baselines baselines;
@@ -109,12 +113,13 @@ void eval(Options o) {
 void add_eval_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("eval", "Measure models and classical denoisers on a folder of test pairs");
     auto o = std::make_shared<Options>();
-    c->add_option("DIR", o->folder, "Folder that `clvr pairs --split test` made")->required();
-    c->add_option("--model", o->models, "Trained network (.safetensors; may be given again)")->type_name("FILE");
+    reads_files(c->add_option("DIR", o->folder, "Folder that `clvr pairs --split test` made")->required());
+    reads_files(c->add_option("--model", o->models, "Trained network (.safetensors; may be given again)")->type_name("FILE"));
     c->add_option("--frame", o->frame, "Which noisy frame of each view, from 0 on, where there are several [0]");
-    c->add_option("--tune", o->tune, "Choose the classical denoisers' settings on this folder of training pairs [defaults]")
-        ->type_name("DIR");
-    c->add_option("--report", o->report, "Also write one self-contained page with pictures, crops and curves")->type_name("FILE.html");
+    reads_files(c->add_option("--tune", o->tune, "Choose the classical denoisers' settings on this folder of training pairs [defaults]")
+                    ->type_name("DIR"));
+    writes_files(
+        c->add_option("--report", o->report, "Also write one self-contained page with pictures, crops and curves")->type_name("FILE.html"));
     c->add_option("--exposure", o->tonemap.exposure, "Report: exposure in stops [0]");
     c->add_option("--tonemap", o->tonemap.curve, "Report: filmic, aces, reinhard or none [filmic]");
     c->add_flag("--json", o->json, "Write JSON with the measures of every view");

@@ -1,7 +1,7 @@
 // clvr experiment: a scene from nothing to a trained model and a report.
 #include "host/cli/command_text.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/source_commit.hpp"
 #include "host/cli/stage_display.hpp"
@@ -10,7 +10,9 @@
 #include "host/dataset/manifest.hpp"
 #include "host/experiment/experiment_estimate.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
+#include "runtime/signals.hpp"
 #include "runtime/size.hpp"
 
 #include <algorithm>
@@ -172,6 +174,8 @@ void print_plan(const ExperimentSettings& s, const std::string& folder, const Ex
 void experiment(const Options& o, const std::string& command) {
     const ExperimentSettings settings = settings_of(o);
     const std::string folder = o.folder.empty() ? settings.name + "-" + settings.scale : o.folder;
+    if (o.folder.empty()) // those of a folder that was named are known already
+        for (const std::string& file : experiment_files(folder)) will_write(file, "clvr experiment");
     const std::atomic<bool>& interrupted = catch_interrupts();
     std::vector<Device> devices = open_devices(o.picture.devices);
     StageDisplay stages;
@@ -202,23 +206,25 @@ void add_experiment_command(CLI::App& app) {
     CLI::App* c =
         app.add_subcommand("experiment", "Volume, views, training, measurement and report of a scene; goes on where it was interrupted");
     auto o = std::make_shared<Options>();
-    c->add_option("SCENE", o->scene,
-                  fmt::format("head, beetle, snake (the published scenes' computed stand-ins), {}, a published volume, or a volume file",
-                              fmt::join(phantom_names(), ", ")))
-        ->required();
-    c->add_option("-o,--output", o->folder, "Folder to fill [SCENE-SCALE]")->type_name("DIR");
+    reads_files(c->add_option(
+                     "SCENE", o->scene,
+                     fmt::format("head, beetle, snake (the published scenes' computed stand-ins), {}, a published volume, or a volume file",
+                                 fmt::join(phantom_names(), ", ")))
+                    ->required());
+    writes_files(c->add_option("-o,--output", o->folder, "Folder to fill [SCENE-SCALE]")->type_name("DIR"), experiment_files);
     c->add_option("--scale", o->scale,
                   "paper (the published protocol at full size), quick (a quarter of an hour on two cores) or tiny [quick]");
     c->add_flag("--dry-run", o->dry_run, "Only print what it would take: paths, bytes, time by a short probe");
     c->add_flag("--json", o->json, "Print JSON");
-    c->add_option("--volume", o->volume, "This file as the scene's volume")->type_name("FILE")->group("Volume");
+    reads_files(c->add_option("--volume", o->volume, "This file as the scene's volume")->type_name("FILE")->group("Volume"));
     c->add_flag("--fetch", o->fetch, "Download the published volume into the folder")->group("Volume");
     c->add_option("--dims", o->dims, "Voxels of a computed volume [those of the published one: all, half of them each way, or 96 at most]")
         ->type_name("WxHxD")
         ->group("Volume");
-    c->add_option("--tf", o->picture.transfer, "Transfer function: a preset's name, or a JSON file [the scene's, else from the histogram]")
-        ->type_name("NAME|FILE")
-        ->group("Volume");
+    reads_files(c->add_option("--tf", o->picture.transfer,
+                              "Transfer function: a preset's name, or a JSON file [the scene's, else from the histogram]")
+                    ->type_name("NAME|FILE")
+                    ->group("Volume"));
     c->add_option("--size", o->picture.size, "Size of the views [512x512, 192x192, 96x96]")->type_name("WxH")->group("Views");
     c->add_option("--views", o->views, "Training views [100, 24, 6]")->group("Views");
     c->add_option("--test-views", o->test_views, "Test views [50, 8, 3]")->group("Views");

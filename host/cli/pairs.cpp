@@ -1,6 +1,7 @@
 // clvr pairs: views around a volume as noisy frames and references, to train and test denoisers on.
+#include "host/train/pairs.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
@@ -8,6 +9,7 @@
 #include "host/io/atomic_file.hpp"
 #include "host/io/scene/scene_inputs.hpp"
 #include "runtime/error.hpp"
+#include "runtime/signals.hpp"
 
 #include <fmt/format.h>
 
@@ -29,6 +31,16 @@ struct Options {
 };
 
 bool is_plan(const std::string& path) { return fs::path(path).filename() == "pairs.json"; }
+
+/// What the command writes in a folder, of what is there: the plan (unless one is gone on with) and frames.
+std::vector<std::string> written_in(const std::string& folder, bool goes_on) {
+    std::vector<std::string> files;
+    if (!goes_on) files.push_back((fs::path(folder) / "pairs.json").string());
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none))
+        if (is_frame_name(entry.path().filename().string())) files.push_back(entry.path().string());
+    return files;
+}
 
 PairsPlan plan_of(const Options& o) {
     if (is_plan(o.scene.input)) return parse_pairs_plan(read_text(o.scene.input), o.scene.input);
@@ -78,7 +90,7 @@ void pairs(const Options& o) {
     std::vector<Device> devices = open_devices(o.scene.devices);
     const Scene& first = plan.scenes.front();
     const EnvironmentTables environment = read_environment(first);
-    const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(first.volume, first.reading, device); }));
+    const PreparedVolume volume(open_volume(first.volume, first.reading, devices));
     settle(plan, volume);
     begin_pairs_folder(o.folder, plan);
 
@@ -101,7 +113,8 @@ void pairs(const Options& o) {
 void add_pairs_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("pairs", "Render views around a volume as noisy frames and references, for training and testing");
     auto o = std::make_shared<Options>();
-    c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is gone on with")->type_name("DIR");
+    writes_files(c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is gone on with")->type_name("DIR"),
+                 [o](const std::string& folder) { return written_in(folder, is_plan(o->scene.input)); });
     c->add_option("--views", o->views, "Number of views [100]")->group("Pairs");
     c->add_option("--reference-spp", o->reference_spp, "Samples per pixel of the references; 0: none [1024]")->group("Pairs");
     c->add_option("--noisy-frames", o->noisy_frames, "Independent noisy frames of each view [1]")->group("Pairs");
@@ -111,9 +124,9 @@ void add_pairs_command(CLI::App& app) {
         ->group("Pairs");
     c->add_option("--split", o->split, "train or test: other views, other noise [train]")->group("Pairs");
     c->add_option("--zoom-range", o->zoom_range, "Zooms of the views, uniform [1,1]")->type_name("LOW,HIGH")->group("Pairs");
-    c->add_option("--vary-tf", o->variations, "Transfer functions (presets or files) that the views take in turn")
-        ->type_name("NAME|FILE")
-        ->group("Pairs");
+    reads_files(c->add_option("--vary-tf", o->variations, "Transfer functions (presets or files) that the views take in turn")
+                    ->type_name("NAME|FILE")
+                    ->group("Pairs"));
     add_scene_options(*c, o->scene);
     c->callback([o] { pairs(*o); });
 }

@@ -1,6 +1,5 @@
 // clvr render: a volume or a scene to pictures.
 #include "host/cli/commands.hpp"
-#include "host/cli/interrupt.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
@@ -14,22 +13,17 @@
 #include "host/render/renderer.hpp"
 #include "runtime/embedded.hpp"
 #include "runtime/sha256.hpp"
+#include "runtime/signals.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <atomic>
-#include <filesystem>
 #include <optional>
 
 namespace clvr {
 
 namespace {
-
-std::string numbered(const std::string& path, int frame) {
-    const std::filesystem::path p(path);
-    return (p.parent_path() / fmt::format("{}_{:03}{}", p.stem().string(), frame, p.extension().string())).string();
-}
 
 void print_presets() {
     for (const auto& p : transfer_presets()) fmt::print("{:<16} {}\n", p.name, p.description);
@@ -104,8 +98,8 @@ void render(const RenderOptions& o) {
     if (o.input.empty())
         throw Error(ErrorKind::usage, "no volume given: name a file or folder, or demo:head for the built-in one", "clvr render");
     if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr render");
-    if (o.turntable < 0 || o.turntable > 10000)
-        throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
+    if (o.turntable < 0 || o.turntable > largest_turntable)
+        throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.turntable, largest_turntable), "--turntable");
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
     Scene scene = scene_of(o);
     if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
@@ -118,7 +112,7 @@ void render(const RenderOptions& o) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const EnvironmentTables environment = read_environment(scene);
     std::vector<Device> devices = open_devices(o.devices);
-    const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(scene.volume, scene.reading, device); }));
+    const PreparedVolume volume(open_volume(scene.volume, scene.reading, devices));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
         const std::string hash = volume_sha256(volume.voxels);
         if (!scene.volume_sha256.empty() && scene.volume_sha256 != hash)
@@ -145,7 +139,7 @@ void render(const RenderOptions& o) {
     for (int view = 0; view < std::max(1, o.turntable) && !interrupted; ++view) {
         std::vector<std::string> outputs = o.outputs;
         if (o.turntable > 0) {
-            for (auto& path : outputs) path = numbered(path, view);
+            for (auto& path : outputs) path = view_path(path, view);
             scene.camera.azimuth = azimuth + 360.0 * view / o.turntable;
             scene.view = view;
             renderer.aim(scene.camera, scene.view);

@@ -1,4 +1,5 @@
 #include "host/cli/render_options.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/volume_options.hpp"
 #include "host/io/atomic_file.hpp"
@@ -112,8 +113,20 @@ TransferFunction transfer_of(const std::string& name) {
 
 } // namespace
 
+std::string view_path(const std::string& path, int view) {
+    const std::filesystem::path p(path);
+    return (p.parent_path() / fmt::format("{}_{:03}{}", p.stem().string(), view, p.extension().string())).string();
+}
+
+std::vector<std::string> view_paths(const std::string& path, int views) {
+    if (views <= 0 || views > largest_turntable) return {path};
+    std::vector<std::string> paths;
+    for (int view = 0; view < views; ++view) paths.push_back(view_path(path, view));
+    return paths;
+}
+
 void add_scene_options(CLI::App& c, RenderOptions& o) {
-    c.add_option("VOLUME", o.input, "Volume file or folder, scene JSON, or demo:head");
+    reads_files(c.add_option("VOLUME", o.input, "Volume file or folder, scene JSON, or demo:head"));
     c.add_option("--spp", o.spp, "Samples per pixel [64]")->group("Picture");
     c.add_option("--size", o.size, "Picture size [640x640]")->type_name("WxH")->group("Picture");
     c.add_option("--seed", o.seed, "Seed of the random numbers [0]")->group("Picture");
@@ -121,10 +134,10 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--background", o.background, "transparent, environment or #rrggbb [transparent]")->group("Picture");
     c.add_option("--feature-samples", o.feature_samples, "Rays per pixel of the noise-free features, 1 or 4 [4]")->group("Picture");
 
-    c.add_option("--tf", o.transfer,
-                 "Transfer function: a preset's name, a JSON file (clvr's or ParaView's), or auto: from the histogram [auto]")
-        ->type_name("NAME|FILE")
-        ->group("Volume");
+    reads_files(c.add_option("--tf", o.transfer,
+                             "Transfer function: a preset's name, a JSON file (clvr's or ParaView's), or auto: from the histogram [auto]")
+                    ->type_name("NAME|FILE")
+                    ->group("Volume"));
     c.add_option("--extinction", o.extinction, "Extinction at opacity 1 [1/mm] [512 / diagonal]")->group("Volume");
     c.add_option("--clip-box", o.clip_box, "Keep only this part, as shares 0..1 of the volume along its axes")
         ->type_name("I0,J0,K0,I1,J1,K1")
@@ -137,9 +150,9 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--shading", o.shading, "auto, phase or gradient [auto]")->group("Light");
     c.add_option("--phase-g", o.phase_g, "Henyey-Greenstein asymmetry, -1 < g < 1 [0]")->group("Light");
     c.add_option("--bounces", o.bounces, "Greatest number of scattering events, 0: unlimited [8]")->group("Light");
-    c.add_option("--environment", o.environment, "sky, a constant radiance, or an image (.hdr, .exr) [sky]")
-        ->type_name("sky|L|FILE")
-        ->group("Light");
+    reads_files(c.add_option("--environment", o.environment, "sky, a constant radiance, or an image (.hdr, .exr) [sky]")
+                    ->type_name("sky|L|FILE")
+                    ->group("Light"));
     c.add_option("--environment-rotation", o.environment_rotation, "Turns the image around the vertical axis [degrees]")->group("Light");
     c.add_option("--key", o.key, "Strength of the soft key light [1 under the sky, else 0]")->group("Light");
     c.add_option("--key-azimuth", o.key_azimuth, "Direction of the key light, relative to the camera's [-40 degrees]")->group("Light");
@@ -160,7 +173,9 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
 }
 
 void add_render_options(CLI::App& c, RenderOptions& o) {
-    c.add_option("-o,--output", o.outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
+    writes_files(
+        c.add_option("-o,--output", o.outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE"),
+        [&o](const std::string& path) { return view_paths(path, o.turntable); });
     c.add_option("--time", o.seconds, "Stop after about so many seconds, with whole passes of samples")
         ->type_name("SECONDS")
         ->group("Picture");
@@ -169,9 +184,12 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--tonemap", o.tonemap, "PNG: filmic, aces, reinhard or none [filmic]")->group("Picture");
     c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Picture");
     c.add_flag("--denoise", o.denoise, "Denoise with a trained network; an EXR keeps the noisy picture as noisy.*")->group("Picture");
-    c.add_option("--model", o.model, "The network of --denoise (.safetensors) [the one inside clvr]")->type_name("FILE")->group("Picture");
+    reads_files(c.add_option("--model", o.model, "The network of --denoise (.safetensors) [the one inside clvr]")
+                    ->type_name("FILE")
+                    ->group("Picture"));
     c.add_flag("--list-tf", o.list_transfer, "List the presets")->group("Volume");
-    c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Device");
+    writes_files(
+        c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Device"));
     add_scene_options(c, o);
 }
 

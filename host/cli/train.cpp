@@ -1,12 +1,13 @@
 // clvr train: folders of pairs to a model.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/signals.hpp"
 
 #include <cstdio>
 #include <fmt/format.h>
@@ -132,12 +133,14 @@ void add_train_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("train", "Train a denoiser on folders that `clvr pairs` made");
     auto o = std::make_shared<Options>();
     TrainerConfig& t = o->trainer;
-    c->add_option("DIR", o->folders, "Folders of training pairs");
-    c->add_option("-o,--output", o->output, "Model to write (.safetensors); beside it .last.safetensors, .checkpoint and .training.csv")
-        ->type_name("MODEL");
-    c->add_option("--validate", o->validate, "Folder of test pairs: the best model on its frames is kept")->type_name("DIR");
+    reads_files(c->add_option("DIR", o->folders, "Folders of training pairs"));
+    writes_files(
+        c->add_option("-o,--output", o->output, "Model to write (.safetensors); beside it .last.safetensors, .checkpoint and .training.csv")
+            ->type_name("MODEL"),
+        training_files);
+    reads_files(c->add_option("--validate", o->validate, "Folder of test pairs: the best model on its frames is kept")->type_name("DIR"));
     c->add_flag("--resume", o->resume, "Go on from the checkpoint: the same bits as without the interruption");
-    c->add_option("--init", o->init, "Begin with this model's weights and settings")->type_name("MODEL");
+    reads_files(c->add_option("--init", o->init, "Begin with this model's weights and settings")->type_name("MODEL"));
     c->add_option("--epochs", t.epochs, "[200]")->group("Training");
     c->add_option("--steps", t.steps, "End after so many steps; 0: with the last epoch [0]")->group("Training");
     c->add_option("--batch", t.step.batch, "Patches a step [128]")->group("Training");

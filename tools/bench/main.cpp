@@ -1,6 +1,8 @@
 // The `clvr-bench` program: measures every device on clvr's real stages, tunes, recommends, remembers.
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
+#include "runtime/program_end.hpp"
 #include "runtime/remembered.hpp"
 #include "runtime/select.hpp"
 #include "tools/bench/bench.hpp"
@@ -14,7 +16,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <new>
 
 namespace clvr::bench {
 namespace {
@@ -62,8 +63,11 @@ void print_recommendations(const Report& report, bool explain) {
 }
 
 void bench_devices(const Options& o) {
-    for (const std::string& file : {o.json, o.html})
-        if (!file.empty()) check_writable(file); // before minutes of measuring
+    for (const auto& [option, file] : {std::pair("--json", o.json), {"--html", o.html}}) {
+        if (file.empty()) continue;
+        will_write(file, option);
+        check_writable(file); // before minutes of measuring
+    }
     for (const std::string& name : o.stages) stage_named(name);
     const std::vector<DeviceFacts> all = list_devices();
     std::vector<DeviceFacts> devices = all;
@@ -86,12 +90,6 @@ void bench_devices(const Options& o) {
     write(o.json, report_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
     write(o.html, report_html(report));
     if (o.save) save(report, all);
-}
-
-int fail(const std::string& what, ErrorKind kind) {
-    std::fflush(stdout);
-    std::fprintf(stderr, "clvr-bench: %s\n", what.c_str());
-    return static_cast<int>(kind);
 }
 
 int run(int argc, char** argv) {
@@ -120,7 +118,7 @@ int run(int argc, char** argv) {
         if (error.get_exit_code() == 0) return app.exit(error); // help and version
         std::string what = error.what();
         std::replace(what.begin(), what.end(), '\n', ' ');
-        return fail(what + " (see clvr-bench --help)", ErrorKind::usage);
+        throw Error(ErrorKind::usage, what + " (see clvr-bench --help)");
     }
     if (o.child) return serve();
     bench_devices(o);
@@ -134,13 +132,5 @@ int main(int argc, char** argv) {
     auto logger = spdlog::stderr_color_mt("clvr-bench");
     logger->set_pattern("%n: %^%l%$: %v");
     spdlog::set_default_logger(std::move(logger));
-    try {
-        return clvr::bench::run(argc, argv);
-    } catch (const clvr::Error& error) {
-        return clvr::bench::fail(error.line(), error.kind());
-    } catch (const std::bad_alloc&) {
-        return clvr::bench::fail("out of memory", clvr::ErrorKind::memory);
-    } catch (const std::exception& error) {
-        return clvr::bench::fail(std::string("internal error: ") + error.what(), clvr::ErrorKind::internal);
-    }
+    return clvr::run_program("clvr-bench", clvr::bench::run, argc, argv);
 }

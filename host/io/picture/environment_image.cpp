@@ -1,4 +1,5 @@
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 
@@ -116,6 +117,7 @@ void check_radiances(const RgbImage& image) {
 } // namespace
 
 RgbImage read_environment_image(const std::string& path) {
+    will_read(path);
     check_readable(path);
     try {
         const std::string bytes = read_text(path, largest_bytes);

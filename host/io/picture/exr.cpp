@@ -1,4 +1,5 @@
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 
@@ -119,6 +120,7 @@ void write_exr(const Frame& frame, const std::string& path) {
 }
 
 Frame read_exr(const std::string& path) {
+    will_read(path);
     check_readable(path);
     try {
         return read_all(path);

@@ -1,4 +1,5 @@
 // TIFF stacks through libtiff, whose every error is one of clvr's.
+#include "host/io/file_roles.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
 
@@ -22,6 +23,7 @@ namespace {
 class TiffFile {
 public:
     explicit TiffFile(const std::string& path) : path_(path), handle_(nullptr, &TIFFClose) {
+        will_read(path);
         const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
         TIFFOpenOptionsSetErrorHandlerExtR(options.get(), &TiffFile::complain, this);
         TIFFOpenOptionsSetWarningHandlerExtR(options.get(), &TiffFile::warn, this);

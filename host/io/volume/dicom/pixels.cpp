@@ -1,4 +1,5 @@
 #include "host/io/volume/dicom/pixels.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/volume/samples.hpp"
 
 #include <algorithm>
@@ -110,6 +111,7 @@ bool decode_fragments(const DicomSlice& s, std::vector<unsigned char>& to) {
 } // namespace
 
 DicomPixelReader::DicomPixelReader(std::vector<const DicomSlice*> order) : order_(std::move(order)) {
+    for (const DicomSlice* slice : order_) will_read(slice->path);
     if (std::any_of(order_.begin(), order_.end(), [](const DicomSlice* s) { return s->file.encapsulated; })) start_child();
 }
 
