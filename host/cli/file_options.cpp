@@ -22,17 +22,15 @@ void each_given(const CLI::App& app, Visit&& visit) {
 
 } // namespace
 
-CLI::Option* reads_files(CLI::Option* option) {
-    declared()[option].read = true;
-    return option;
+void reads_files(CLI::App& command, const std::vector<std::string>& options) {
+    for (const std::string& option : options) declared()[command.get_option(option)].read = true;
 }
 
-CLI::Option* writes_files(CLI::Option* option, WrittenFiles files) {
+void writes_files(CLI::App& command, const std::string& option, WrittenFiles files) {
     if (!files) files = [](const std::string& value) { return std::vector{value}; };
-    FileOption& role = declared()[option];
+    FileOption& role = declared()[command.get_option(option)];
     role.written = true;
     role.files = std::move(files);
-    return option;
 }
 
 FileOption file_option(const CLI::Option* option) {

@@ -12,10 +12,10 @@ namespace clvr {
 /// The files that a command writes where an option has this value: the value itself, unless told otherwise.
 using WrittenFiles = std::function<std::vector<std::string>(const std::string& value)>;
 
-/// The option's values are files or folders that the command reads.
-CLI::Option* reads_files(CLI::Option* option);
-/// The command writes files by the option's values.
-CLI::Option* writes_files(CLI::Option* option, WrittenFiles files = {});
+/// The values of these options are files or folders that the command reads.
+void reads_files(CLI::App& command, const std::vector<std::string>& options);
+/// The command writes files by the values of this option.
+void writes_files(CLI::App& command, const std::string& option, WrittenFiles files = {});
 
 /// What was declared of an option.
 struct FileOption {

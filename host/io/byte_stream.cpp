@@ -127,11 +127,23 @@ bool is_gzip(const std::string& path) {
     return head == "\x1f\x8b";
 }
 
+ByteStream open_inside(const std::string& path) {
+    return ByteStream(path, is_gzip(path) ? ByteStream::Coding::deflated : ByteStream::Coding::plain);
+}
+
 std::string read_head(const std::string& path, std::size_t limit) {
     const auto file = open(path); // no ByteStream: whoever looks at a file's head need not take it as an input
     std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, std::filesystem::file_size(path))), '\0');
     head.resize(std::fread(head.data(), 1, head.size(), file.get()));
     if (std::ferror(file.get())) unreadable(path);
+    return head;
+}
+
+std::string read_head_inside(const std::string& path, std::size_t limit) {
+    if (!is_gzip(path)) return read_head(path, limit);
+    ByteStream stream(path, ByteStream::Coding::deflated);
+    std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, stream.capacity())), '\0');
+    head.resize(stream.read(head.data(), head.size()));
     return head;
 }
 

@@ -13,8 +13,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 TEST_F(Program, UsageErrorsAreOneLineAndExitCode2) {
-    for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
-                                                      {"nonsense"},
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"nonsense"},
                                                       {"devices", "--nonsense"},
                                                       {"devices", "--device"},
                                                       {"--config", "/none.ini", "devices"},
@@ -32,6 +31,8 @@ TEST_F(Program, HelpAndVersionAreNoErrors) {
     EXPECT_EQ(run({"--version"}).out, CLVR_VERSION "\n");
     EXPECT_EQ(run({"devices", "--help"}).exit_code, 0);
     EXPECT_THAT(run({"--help"}).out, HasSubstr("devices"));
+    EXPECT_EQ(run({}).exit_code, 0);
+    EXPECT_EQ(run({}).out, run({"--help"}).out);
 }
 
 TEST_F(Program, ConfigFilesAreReadAndUnknownKeysRefused) {

@@ -1,6 +1,6 @@
 // No output is an input or another output: every command's options are walked as CLI11 describes them, so that none can be forgotten.
-#include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
+#include "host/cli/program.hpp"
 #include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
 #include "tests/cli/home.hpp"
@@ -32,9 +32,7 @@ protected:
     std::vector<Command> commands;
 
     Outputs() {
-        add_devices_command(all), add_info_command(all), add_render_command(all), add_denoise_command(all), add_pairs_command(all);
-        add_compare_command(all), add_train_command(all), add_eval_command(all), add_dataset_command(all), add_experiment_command(all);
-        add_ablation_command(all), add_selftest_command(all);
+        add_program(all);
         collect(all, {});
     }
 
