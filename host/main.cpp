@@ -1,8 +1,9 @@
-// The `clvr` program: parses the words, which runs a command, and catches Error once.
+// The `clvr` program: parses the words, which runs a command.
 #include "host/cli/first_word.hpp"
 #include "host/cli/nearest.hpp"
 #include "host/cli/program.hpp"
 #include "runtime/error.hpp"
+#include "runtime/program_end.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
@@ -10,16 +11,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <new>
 #include <string>
 
 namespace {
-
-/// Prints "clvr: <what>" and gives the exit code back.
-int report(const std::string& what, clvr::ErrorKind kind) {
-    std::fprintf(stderr, "clvr: %s\n", what.c_str());
-    return static_cast<int>(kind);
-}
 
 /// Everything that is no result goes to stderr: "clvr: warning: ..." unless --quiet, details with --verbose.
 void log_to_stderr() {
@@ -49,6 +43,7 @@ std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int run(int argc, char** argv) {
+    log_to_stderr();
     CLI::App app;
     clvr::add_program(app);
     try {
@@ -58,22 +53,11 @@ int run(int argc, char** argv) {
         if (app.get_subcommands().empty()) std::fputs(app.help().c_str(), stdout);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // help and version
-        return report(refusal(app, error), clvr::ErrorKind::usage);
+        throw clvr::Error(clvr::ErrorKind::usage, refusal(app, error));
     }
     return 0;
 }
 
 } // namespace
 
-int main(int argc, char** argv) {
-    log_to_stderr();
-    try {
-        return run(argc, argv);
-    } catch (const clvr::Error& error) {
-        return report(error.line(), error.kind());
-    } catch (const std::bad_alloc&) {
-        return report("out of memory; try a smaller picture or volume", clvr::ErrorKind::memory);
-    } catch (const std::exception& error) {
-        return report(std::string("internal error: ") + error.what(), clvr::ErrorKind::internal);
-    }
-}
+int main(int argc, char** argv) { return clvr::run_program("clvr", run, argc, argv); }

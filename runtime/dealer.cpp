@@ -202,14 +202,18 @@ void Dealer::drop(std::size_t device, const Error& error) {
 }
 
 void Dealer::each(const Task& task) {
-    for (const std::size_t device : left()) {
+    std::vector<std::pair<std::size_t, Error>> failures;
+    const std::vector<std::size_t> devices = left();
+    for (const std::size_t device : devices) {
         try {
             task(device);
         } catch (const Error& error) {
             if (!is_device_failure(error)) throw;
-            drop(device, error);
+            failures.emplace_back(device, error);
         }
     }
+    if (failures.size() == devices.size()) throw Error(failures.back().second); // what none can do is no device's failure
+    for (const auto& [device, error] : failures) drop(device, error);
 }
 
 void Dealer::compare(const std::string& what, const std::function<std::string(std::size_t)>& result) {

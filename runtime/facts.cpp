@@ -1,6 +1,7 @@
 #include "runtime/facts.hpp"
 
 #include "runtime/check.hpp"
+#include "runtime/driver_trial.hpp"
 #include "runtime/quirks.hpp"
 
 #include <fmt/format.h>
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <mutex>
 
 namespace clvr {
 namespace {
@@ -95,6 +95,7 @@ PlatformFacts facts_of(const cl::Platform& handle) {
 } // namespace
 
 std::string why_unusable(const DeviceFacts& device) {
+    if (!device.driver_problem.empty()) return device.driver_problem;
     if (!device.available) return "is not available now";
     if (!device.has_compiler) return "has no OpenCL compiler";
     if (!offers_1_2(device.version)) return fmt::format("offers \"{}\", clvr needs OpenCL 1.2", device.version);
@@ -135,8 +136,12 @@ std::vector<DeviceFacts> divide(const DeviceFacts& root, int parts) {
 }
 
 std::vector<PlatformFacts> list_platforms() {
-    static std::once_flag once;
-    std::call_once(once, quirks::pocl_hides_devices_without_writable_cache);
+    static const DriverProblems problems = [] {
+        quirks::pocl_hides_devices_without_writable_cache();
+        return try_drivers();
+    }();
+    if (problems.count(-1))
+        throw Error(ErrorKind::device, fmt::format("an OpenCL driver on this machine {}", problems.at(-1)));
     std::vector<cl::Platform> handles;
     try {
         cl::Platform::get(&handles);
@@ -147,7 +152,13 @@ std::vector<PlatformFacts> list_platforms() {
     int index = 0;
     for (const cl::Platform& handle : handles) {
         platforms.push_back(facts_of(handle));
-        for (DeviceFacts& device : platforms.back().devices) device.index = index++;
+        PlatformFacts& platform = platforms.back();
+        if (const auto found = problems.find(static_cast<int>(platforms.size()) - 1); found != problems.end())
+            platform.problem = found->second;
+        for (DeviceFacts& device : platform.devices) {
+            device.index = index++;
+            if (!platform.problem.empty()) device.driver_problem = fmt::format("the driver {} {}", platform.name, platform.problem);
+        }
     }
     return platforms;
 }

@@ -20,8 +20,9 @@ struct DeviceFacts {
     std::string platform, platform_version, vendor, name, version, driver_version, opencl_c_version;
     DeviceType type = DeviceType::cpu;
     bool available = false, has_compiler = false;
-    bool simulator = false; ///< an interpreter such as Oclgrind: never chosen by default, nor by `cpu` or `gpu`
-    bool pocl = false;      ///< PoCL keeps its own program cache and aborts on broken binaries
+    std::string driver_problem; ///< why its driver must not be used (runtime/driver_trial.hpp); empty: it works
+    bool simulator = false;     ///< an interpreter such as Oclgrind: never chosen by default, nor by `cpu` or `gpu`
+    bool pocl = false;          ///< PoCL keeps its own program cache and aborts on broken binaries
     unsigned compute_units = 0, clock_mhz = 0, native_float_width = 1, max_sub_devices = 0;
     std::size_t global_bytes = 0, max_alloc_bytes = 0, local_bytes = 0, max_work_group = 1;
     std::size_t max_work_item[3] = {1, 1, 1};
@@ -31,6 +32,7 @@ struct DeviceFacts {
 
 struct PlatformFacts {
     std::string name, vendor, version;
+    std::string problem;              ///< of its driver: none of its devices is usable
     std::vector<DeviceFacts> devices; ///< may be empty: a platform without devices is a fact, too
 };
 
@@ -44,8 +46,9 @@ const char* type_name(DeviceType type);
 /// Throws Error{device} when the device cannot be divided so.
 std::vector<DeviceFacts> divide(const DeviceFacts& root, int parts);
 
-/// Lists all platforms, in the loader's order. No platform at all gives an empty vector. Never throws for a broken platform: it is listed
-/// without devices.
+/// Lists all platforms, in the loader's order; the first call tries the drivers (runtime/driver_trial.hpp). No platform at all gives an
+/// empty vector. Does not throw for a broken platform: it is listed without devices, or with its problem. Throws Error{device} where a
+/// driver ends the process that lists them.
 std::vector<PlatformFacts> list_platforms();
 
 /// All devices of all platforms, flat, `index` filled.

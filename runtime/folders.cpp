@@ -1,6 +1,6 @@
 #include "runtime/folders.hpp"
+#include "runtime/temporary.hpp"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <atomic>
@@ -55,17 +55,18 @@ std::optional<std::string> load_file(const fs::path& path) {
 }
 
 bool replace_file(const fs::path& path, std::string_view bytes) {
-    static std::atomic<unsigned> count{0};
-    const fs::path temporary = fmt::format("{}.{}.{}", path.string(), getpid(), count++);
     std::error_code failed;
     fs::create_directories(path.parent_path(), failed);
-    std::ofstream file(temporary, std::ios::binary);
+    remove_stale_files(path.parent_path().string());
+    Temporary temporary = Temporary::file_in(path.parent_path().string());
+    if (temporary.path().empty()) return false;
+    std::ofstream file(temporary.path(), std::ios::binary);
     file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     file.close();
-    if (file) fs::rename(temporary, path, failed);
-    if (file && !failed) return true;
-    fs::remove(temporary, failed);
-    return false;
+    if (file) fs::rename(temporary.path(), path, failed);
+    if (!file || failed) return false;
+    temporary.give_up();
+    return true;
 }
 
 } // namespace clvr

@@ -31,6 +31,8 @@ cl::Program from_source(const cl::Context& context, const DeviceFacts& facts, co
         program.build({facts.handle}, options.c_str());
         return program;
     } catch (const cl::BuildError& error) {
+        if (facts.pocl)
+            if (const std::string why = quirks::pocl_cache_problem(); !why.empty()) throw Error(ErrorKind::input, why);
         std::string log;
         for (const auto& [device, text] : error.getBuildLog()) log += text;
         throw Error(ErrorKind::device,

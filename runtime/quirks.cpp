@@ -1,11 +1,18 @@
 #include "runtime/quirks.hpp"
 
 #include "runtime/folders.hpp"
+#include "runtime/temporary.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace clvr::quirks {
 namespace fs = std::filesystem;
@@ -20,7 +27,17 @@ fs::path pocl_cache() {
     return {};
 }
 
-fs::path private_cache; // of this process, empty when the usual one serves
+Temporary private_cache; // of this process, empty when the usual one serves
+
+/// Why so many bytes cannot be written into the folder; empty: they can.
+std::string why_no_room(const fs::path& folder, off_t bytes) {
+    const Temporary file = Temporary::file_in(folder.string());
+    if (file.path().empty()) return std::strerror(errno);
+    const int fd = ::open(file.path().c_str(), O_WRONLY | O_CLOEXEC);
+    const int why = fd < 0 ? errno : ::posix_fallocate(fd, 0, bytes); // counts against quotas and ulimit -f, too
+    if (fd >= 0) ::close(fd);
+    return why == 0 || why == EOPNOTSUPP || why == EINVAL ? "" : std::strerror(why);
+}
 
 } // namespace
 
@@ -28,19 +45,29 @@ void pocl_hides_devices_without_writable_cache() {
     const fs::path usual = pocl_cache();
     if (!usual.empty() && writable_folder(usual)) return;
     std::error_code failed;
-    std::string folder = (fs::temp_directory_path(failed) / "clvr-pocl-XXXXXX").string();
-    if (failed || !mkdtemp(folder.data())) {
+    const std::string temporary = fs::temp_directory_path(failed).string();
+    remove_stale_folders(temporary, "pocl");
+    private_cache = Temporary::folder_in(temporary, "pocl");
+    if (private_cache.path().empty()) {
         spdlog::warn("no folder for compiled kernels can be written ({} and the temporary folder); PoCL will show no device",
                      usual.string());
         return;
     }
-    private_cache = folder;
-    setenv("POCL_CACHE_DIR", folder.c_str(), 1);
-    std::atexit([] {
-        std::error_code ignored;
-        fs::remove_all(private_cache, ignored);
-    });
+    setenv("POCL_CACHE_DIR", private_cache.path().c_str(), 1);
+    std::atexit([] { private_cache = Temporary(); });
     spdlog::debug("PoCL cannot write {}; it keeps its kernels in a temporary folder", usual.empty() ? "(no HOME)" : usual.string());
+}
+
+std::string pocl_cache_problem() {
+    constexpr off_t largest_kernel = off_t{4} << 20; // [bytes], compiled
+    const fs::path cache = pocl_cache();
+    std::error_code none;
+    if (cache.empty() || !fs::is_directory(cache, none)) return {};
+    const std::string why = why_no_room(cache, largest_kernel);
+    if (why.empty()) return {};
+    return fmt::format("{}: the OpenCL driver's cache folder has no room for another kernel ({}); free some disk space, or set "
+                       "POCL_CACHE_DIR to a folder on another disk",
+                       cache.string(), why);
 }
 
 bool pocl_aborts_on_broken_binaries(const std::string& platform) {

@@ -13,6 +13,10 @@ namespace clvr::quirks {
 /// OpenCL call. https://github.com/pocl/pocl/issues/325
 void pocl_hides_devices_without_writable_cache();
 
+/// PoCL 3.1 cannot build without room in its kernel cache: LLVM says "IO failure" and calls exit(1), or the build fails. One line that
+/// names the folder and why it takes no more (a full disk, a quota, ulimit -f); empty where there is room.
+std::string pocl_cache_problem();
+
 /// PoCL 3.1 aborts the process on a broken program binary (an assertion in pocl_binary.c) and has a cache of its own: never give it
 /// binaries; fetching them compiles everything once more. https://github.com/inducer/pyopencl/issues/731
 bool pocl_aborts_on_broken_binaries(const std::string& platform);

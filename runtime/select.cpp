@@ -40,10 +40,13 @@ void require_devices(const std::vector<PlatformFacts>& platforms) {
 /// The rule below all wishes.
 Choice by_default(const std::vector<DeviceFacts>& devices, const Fastest& fastest) {
     const std::vector<std::size_t> candidates = default_candidates(devices);
-    if (candidates.empty())
+    if (candidates.empty()) {
+        for (const DeviceFacts& device : devices) // what can be mended comes before what is missing
+            if (!device.driver_problem.empty()) throw Error(ErrorKind::device, device.driver_problem, device.name);
         throw Error(
             ErrorKind::device,
             fmt::format("there are only simulators or unusable devices here (see clvr devices); choose one with --device, or {}", advice));
+    }
     if (candidates.size() == 1) return {{{candidates[0], 0}}, "it is the only usable device that is no simulator"};
     return {{{fastest(candidates), 0}}, fmt::format("it was the fastest of {} in clvr's short probe", candidates.size())};
 }

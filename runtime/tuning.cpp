@@ -63,8 +63,8 @@ Tunables parse_tunables(const std::string& text, const std::string& where) {
         const std::size_t start = equals == std::string::npos ? item.size() : equals + 1;
         char* end = nullptr;
         const long value = std::strtol(item.c_str() + start, &end, 10);
-        if (equals == 0 || end == item.c_str() + start || *end)
-            throw Error(ErrorKind::usage, fmt::format("\"{}\" is not name=value with a whole number", item), where);
+        if (equals == 0 || end == item.c_str() + start || *end || value < 0 || value > largest_value)
+            throw Error(ErrorKind::usage, fmt::format("\"{}\" is not name=value with a whole number from 0 to 2^30", item), where);
         tunables[item.substr(0, equals)] = static_cast<int>(value);
     }
     return tunables;

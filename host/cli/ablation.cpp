@@ -4,11 +4,12 @@
 #include "host/cli/command_text.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/source_commit.hpp"
 #include "host/cli/stage_display.hpp"
 #include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/signals.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -89,6 +90,8 @@ void add_ablation_command(CLI::App& app) {
     c->footer("Examples:\n"
               "  clvr ablation train1 train2 --test test1 --test test2 -o ablation\n");
     add_device_options(*c, o->device, "train");
+    reads_files(*c, {"DIR", "--test"});
+    writes_files(*c, "--output", ablation_files);
     c->callback([o, c] { ablation(*o, command_text(*c)); });
 }
 

@@ -1,5 +1,6 @@
 // clvr compare: how far a picture is from its reference.
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/frame/channel_mapping.hpp"
 #include "host/frame/error_pictures.hpp"
 #include "host/frame/metrics.hpp"
@@ -99,6 +100,8 @@ void add_compare_command(CLI::App& app) {
     c->footer("Examples:\n"
               "  clvr compare clean.exr reference.exr\n"
               "  clvr compare clean.exr reference.exr --tonemap filmic --map error.png\n");
+    reads_files(*c, {"A", "B"});
+    writes_files(*c, "--map", [](const std::string& name) { return std::vector{beside(name, "flip"), beside(name, "difference")}; });
     c->callback([o] { compare(*o); });
 }
 

@@ -1,7 +1,7 @@
 // clvr dataset: volumes that others publish, and volumes that clvr computes.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/volume_options.hpp"
 #include "host/dataset/download.hpp"
@@ -10,6 +10,7 @@
 #include "host/volume/phantom.hpp"
 #include "runtime/error.hpp"
 #include "runtime/json_text.hpp"
+#include "runtime/signals.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -69,6 +70,15 @@ void info(const Options& o) {
     fmt::print("  view      --azimuth {} --elevation {} --zoom {}{}\n", d.azimuth, d.elevation, d.zoom,
                d.transfer_function.empty() ? "" : " --tf " + d.transfer_function);
     if (!d.computed.empty()) fmt::print("  stand-in  clvr dataset make {}\n", d.computed);
+}
+
+/// What any download into the folder may write.
+std::vector<std::string> fetched_files(const std::string& folder) {
+    std::vector<std::string> all;
+    for (const Dataset& d : datasets())
+        if (!d.url.empty())
+            for (const std::string& file : download_files((fs::path(folder) / d.file_name()).string())) all.push_back(file);
+    return all;
 }
 
 void fetch(const Options& o) {
@@ -135,6 +145,7 @@ void add_dataset_command(CLI::App& app) {
     f->add_option("NAME", o->name, "As listed")->type_name("DATASET")->required();
     f->add_option("--dir", o->folder, "Folder to write into [.]")->type_name("DIR")->group("Output");
     f->footer("Examples:\n  clvr dataset fetch bonsai --dir volumes\n");
+    writes_files(*f, "--dir", fetched_files);
     f->callback([o] { fetch(*o); });
 
     CLI::App* m = c->add_subcommand("make", "Compute a volume: the same bits on every device");
@@ -151,6 +162,7 @@ void add_dataset_command(CLI::App& app) {
               "  clvr dataset make vessels -o vessels.nii.gz --dims 256x256x256\n");
     add_device_options(*m, o->device, "render");
     m->footer("Examples:\n  clvr dataset make vessels -o vessels.nii.gz --dims 256x256x256\n");
+    writes_files(*m, "--output");
     m->callback([o] { make(*o); });
 }
 

@@ -1,16 +1,19 @@
 // clvr denoise: a noisy picture to a clean one.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/picture_outputs.hpp"
 #include "host/denoise/channels.hpp"
 #include "host/denoise/denoiser.hpp"
 #include "host/denoise/model_choice.hpp"
 #include "host/frame/channel_mapping.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/render/scene.hpp"
 #include "runtime/dealer.hpp"
 
+#include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
@@ -46,24 +49,36 @@ DenoiserView view_of(const std::vector<std::string>& names) {
     return view;
 }
 
-/// Writes each shown channel as a picture beside `output`: out.guide.1.png, out.level1.png.
-void write_shown(const Frame& frame, const std::string& output, const Tonemap& tonemap) {
-    const auto write = [&](const Frame& picture, const Tonemap& as, const std::string& name) {
+/// A picture of what the network made, beside the output: out.guide.1.png, out.level1.png.
+struct Shown {
+    std::string path;
+    std::array<std::string, 3> channels; ///< shown as red, green, blue
+    bool is_light = false;               ///< for the tone map
+};
+
+std::vector<Shown> shown_of(const Frame& frame, const std::string& output) {
+    const auto path = [&](const std::string& name) {
         const std::filesystem::path p(output);
         const std::string ending = is_exr_path(output) ? ".png" : p.extension().string();
-        write_frame(picture, as, (p.parent_path() / (p.stem().string() + "." + name + ending)).string());
+        return (p.parent_path() / (p.stem().string() + "." + name + ending)).string();
     };
-    Frame picture = frame.blank();
+    std::vector<Shown> shown;
     for (const auto& [name, values] : frame.channels) {
         if (name.rfind("guide.", 0) == 0 || name.rfind("weight.", 0) == 0) {
-            for (const char* c : {"R", "G", "B"}) picture.channels[c] = values;
-            write(picture, {"none", 0}, name);
+            shown.push_back({path(name), {name, name, name}, false});
         } else if (name.rfind("level", 0) == 0 && name.size() > 2 && name.substr(name.size() - 2) == ".R") {
             const std::string level = name.substr(0, name.size() - 2);
-            for (const char* c : {"R", "G", "B"}) picture.channels[c] = frame.at(level + "." + c);
-            write(picture, tonemap, level);
+            shown.push_back({path(level), {level + ".R", level + ".G", level + ".B"}, true});
         }
     }
+    return shown;
+}
+
+void write_shown(const Frame& frame, const Shown& shown, const Tonemap& tonemap) {
+    Frame picture = frame.blank();
+    const char* const colours[] = {"R", "G", "B"};
+    for (std::size_t c = 0; c < 3; ++c) picture.channels[colours[c]] = frame.at(shown.channels[c]);
+    write_frame(picture, shown.is_light ? tonemap : Tonemap{"none", 0}, shown.path);
 }
 
 /// Calls `act`; an Error about the frame names its file.
@@ -183,8 +198,11 @@ void denoise(const Options& o) {
         });
     });
     if (repaired > 0) spdlog::warn("{}: {} values are not finite; taken as 0", o.input, repaired);
+    std::vector<Shown> shown;
+    if (!o.show.empty()) shown = shown_of(frame, o.outputs.front());
+    for (const Shown& picture : shown) will_write(picture.path, "--show"); // their names come from the model
     pictures.write(frame, tonemap, o.outputs);
-    if (!o.show.empty()) write_shown(frame, o.outputs.front(), tonemap);
+    for (const Shown& picture : shown) write_shown(frame, picture, tonemap);
     print_profiles(o.device, {devices.front()});
 }
 
@@ -225,6 +243,8 @@ void add_denoise_command(CLI::App& app) {
               "  clvr denoise noisy.exr -o clean.png --model mine.safetensors\n"
               "  clvr denoise other.exr -o clean.exr --map albedo=DiffCol\n");
     add_device_options(*c, o->device, "denoise");
+    reads_files(*c, {"IN", "--model", "--albedo", "--normal"});
+    writes_files(*c, "--output");
     c->callback([o] { denoise(*o); });
 }
 

@@ -43,7 +43,7 @@ void print_profiles(const DeviceOptions& options, std::vector<Device> devices) {
     if (!options.profile) return;
     for (auto& d : devices) {
         d.finish();
-        fmt::print(stderr, "{}", d.profile().table());
+        std::fputs(d.profile().table().c_str(), stderr);
     }
 }
 

@@ -96,7 +96,10 @@ void print_text(const Report& report) {
     fmt::print("    #  {:<11}  {:<{}}  {:<{}}  {:>5}  {:>5}  {:>8}  {:>8}  {}\n", "type", "device", name_width, "driver", driver_width,
                "units", "float", "memory", "a buffer", "trust");
     for (const PlatformFacts& platform : report.platforms) {
-        fmt::print("{}{}\n", platform.name, platform.devices.empty() ? ": no devices" : "");
+        fmt::print("{}{}\n", platform.name,
+                   !platform.devices.empty()  ? ""
+                   : platform.problem.empty() ? ": no devices"
+                                              : ": " + platform.problem);
         for (const DeviceFacts& d : platform.devices)
             fmt::print("  {}{:>2}  {:<11}  {:<{}}  {:<{}}  {:>5}  {:>5}  {:>8}  {:>8}  {}\n", selected(report, d.index) ? ">" : " ",
                        d.index, type_name(d.type), d.name, name_width, d.driver_version, driver_width, d.compute_units,

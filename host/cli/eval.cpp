@@ -1,10 +1,12 @@
 // clvr eval: what denoisers reach on a folder of test pairs.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/eval/evaluation_json.hpp"
 #include "host/eval/report.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/train/trainer.hpp"
@@ -71,7 +73,9 @@ void eval(Options o) {
     for (std::size_t k = 0; k < o.models.size(); ++k) {
         models.emplace_back(names[k], read_model(o.models[k]));
         const std::string csv = training_csv(o.models[k]);
-        if (fs::is_regular_file(csv)) trainings.emplace_back(names[k], read_text(csv));
+        if (!fs::is_regular_file(csv)) continue;
+        will_read(csv);
+        trainings.emplace_back(names[k], read_text(csv));
     }
     Device device = open_device(o.device);
     Baselines baselines;
@@ -128,6 +132,8 @@ void add_eval_command(CLI::App& app) {
               "  clvr eval test --model mine.safetensors --report report.html\n"
               "  clvr eval test --model a.safetensors --model b.safetensors --tune train --json\n");
     add_device_options(*c, o->device, "denoise");
+    reads_files(*c, {"DIR", "--model", "--tune"});
+    writes_files(*c, "--report");
     c->callback([o] { eval(*o); });
 }
 

@@ -1,7 +1,7 @@
 // clvr experiment: a scene from nothing to a trained model and a report.
 #include "host/cli/command_text.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/cli/source_commit.hpp"
 #include "host/cli/stage_display.hpp"
@@ -10,8 +10,10 @@
 #include "host/dataset/manifest.hpp"
 #include "host/experiment/experiment_estimate.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
 #include "runtime/json_text.hpp"
+#include "runtime/signals.hpp"
 #include "runtime/size.hpp"
 
 #include <algorithm>
@@ -173,6 +175,8 @@ void print_plan(const ExperimentSettings& s, const std::string& folder, const Ex
 void experiment(const Options& o, const std::string& command) {
     const ExperimentSettings settings = settings_of(o);
     const std::string folder = o.folder.empty() ? settings.name + "-" + settings.scale : o.folder;
+    if (o.folder.empty()) // those of a folder that was named are known already
+        for (const std::string& file : experiment_files(folder)) will_write(file, "clvr experiment");
     const std::atomic<bool>& interrupted = catch_interrupts();
     std::vector<Device> devices = open_devices(o.picture.devices);
     StageDisplay stages;
@@ -247,6 +251,8 @@ void add_experiment_command(CLI::App& app) {
               "  clvr experiment stag_beetle --fetch --scale paper\n"
               "  clvr experiment scan.nii.gz -o mine\n");
     add_device_options(*c, o->picture.devices, "train");
+    reads_files(*c, {"SCENE", "--volume", "--tf"});
+    writes_files(*c, "--output", experiment_files);
     c->callback([o, c] { experiment(*o, command_text(*c)); });
 }
 

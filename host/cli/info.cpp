@@ -1,5 +1,6 @@
 // `clvr info`: what a volume file holds, and what the device would have to hold.
 #include "host/cli/commands.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/text_chart.hpp"
 #include "host/cli/volume_options.hpp"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -83,20 +85,16 @@ MemoryPlan plan_for(const Device& device, const Voxels& v, const MajorantGrid& g
     return plan;
 }
 
+Voxels volume_of(const Options& o) {
+    if (!is_demo_volume(o.input)) return read_volume(o.input, o.volume);
+    std::vector devices{Device::open(select_devices(o.selector, "render").devices.front())};
+    return open_volume(o.input, o.volume, devices);
+}
+
+/// What the file holds: without any device.
 Report make_report(const Options& o) {
     Report r;
-    std::vector<Device> devices;
-    try {
-        const Selection selection = select_devices(o.selector, "render");
-        for (const DeviceFacts& facts : selection.devices) devices.push_back(Device::open(facts));
-        r.rule = selection.rule;
-    } catch (const Error& e) {
-        // The file can be described without a device; a device that was asked for must be there.
-        if (e.kind() != ErrorKind::device || !o.selector.empty() || is_demo_volume(o.input)) throw;
-        devices.clear();
-        r.rule = e.line();
-    }
-    r.volume = is_demo_volume(o.input) ? open_volume(o.input, o.volume, devices.front()) : read_volume(o.input, o.volume);
+    r.volume = volume_of(o);
     const Voxels& v = r.volume;
     r.histogram = stored_histogram(v);
     r.range = {v.slope * r.histogram.low + v.intercept, v.slope * r.histogram.high + v.intercept};
@@ -106,11 +104,22 @@ Report make_report(const Options& o) {
     }
     for (int j = 0; j < 3; ++j) r.axes[j] = axis_text(v.geometry.direction.column(j));
     r.oblique_degrees = obliqueness(v.geometry.direction);
-    if (!devices.empty()) {
-        const MajorantGrid grid = majorant_grid(v);
-        for (const Device& device : devices) r.plans.push_back(plan_for(device, v, grid));
-    }
     return r;
+}
+
+/// Adds what the devices would hold; where there is none, why. Throws Error for a device that was asked for.
+void add_plans(Report& r, const Options& o) {
+    try {
+        const Selection selection = select_devices(o.selector, "render");
+        const MajorantGrid grid = majorant_grid(r.volume);
+        for (const DeviceFacts& facts : selection.devices) // no kernel is built, so a device need not be trusted
+            r.plans.push_back(plan_for(Device::open(facts, true), r.volume, grid));
+        r.rule = selection.rule;
+    } catch (const Error& e) {
+        if (e.kind() != ErrorKind::device || !o.selector.empty()) throw;
+        r.plans.clear();
+        r.rule = e.line();
+    }
 }
 
 Double3 size_mm(const Voxels& v) {
@@ -133,6 +142,7 @@ void print_plan(const MemoryPlan& plan, const Voxels& v) {
                                               : "the volume does not fit: " + plan.problem);
 }
 
+/// All but the memory plans.
 void print_text(const Report& r) {
     const Voxels& v = r.volume;
     const Geometry& g = v.geometry;
@@ -159,10 +169,13 @@ void print_text(const Report& r) {
     print_line("values", fmt::format("{:.6g} to {:.6g}{}", r.range[0], r.range[1], scaled ? scale : ""));
     const bool whole = v.type != VoxelType::f32;
     fmt::print("\n{}\n", histogram_chart(r.histogram.bins, r.range[0], r.range[1], whole ? r.histogram.high - r.histogram.low + 1 : 0));
-    for (const MemoryPlan& plan : r.plans) print_plan(plan, v);
-    if (r.plans.empty()) print_line("device", "none: " + r.rule);
     for (const std::string& decision : v.decisions) print_line("read as", decision);
     for (const std::string& note : v.notes) print_line("note", note);
+}
+
+void print_plans(const Report& r) {
+    for (const MemoryPlan& plan : r.plans) print_plan(plan, r.volume);
+    if (r.plans.empty()) print_line("device", "none: " + r.rule);
 }
 
 nlohmann::json to_json(const MemoryPlan& plan) {
@@ -228,9 +241,13 @@ void add_info_command(CLI::App& app) {
                     "  clvr info scans/ --json\n"
                     "  clvr info fuel.raw --dims 64x64x64 --type uint8\n");
     add_volume_options(*command, options->volume);
+    reads_files(*command, {"VOLUME"});
     command->callback([options] {
-        const Report report = make_report(*options);
-        options->json ? print_json(report) : print_text(report);
+        Report report = make_report(*options);
+        if (!options->json) print_text(report);
+        std::fflush(stdout); // whatever drivers do then
+        add_plans(report, *options);
+        options->json ? print_json(report) : print_plans(report);
     });
 }
 

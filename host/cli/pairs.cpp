@@ -1,6 +1,7 @@
 // clvr pairs: views around a volume as noisy frames and references, to train and test denoisers on.
+#include "host/train/pairs.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
@@ -8,6 +9,7 @@
 #include "host/io/atomic_file.hpp"
 #include "host/io/scene/scene_inputs.hpp"
 #include "runtime/error.hpp"
+#include "runtime/signals.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -30,6 +32,16 @@ struct Options {
 };
 
 bool is_plan(const std::string& path) { return fs::path(path).filename() == "pairs.json"; }
+
+/// What the command writes in a folder, of what is there: the plan (unless one is gone on with) and frames.
+std::vector<std::string> written_in(const std::string& folder, bool goes_on) {
+    std::vector<std::string> files;
+    if (!goes_on) files.push_back((fs::path(folder) / "pairs.json").string());
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none))
+        if (is_frame_name(entry.path().filename().string())) files.push_back(entry.path().string());
+    return files;
+}
 
 PairsPlan plan_of(const Options& o) {
     if (is_plan(o.scene.input)) return parse_pairs_plan(read_text(o.scene.input), o.scene.input);
@@ -81,7 +93,7 @@ void pairs(const Options& o) {
     std::vector<std::string> notes;
     const EnvironmentTables environment = read_environment(first, &notes);
     for (const auto& note : notes) spdlog::debug("{}: {}", first.light.image, note);
-    const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(first.volume, first.reading, device); }));
+    const PreparedVolume volume(open_volume(first.volume, first.reading, devices));
     settle(plan, volume);
     begin_pairs_folder(o.folder, plan);
 
@@ -124,6 +136,8 @@ void add_pairs_command(CLI::App& app) {
               "  clvr pairs scan.nii.gz -o train --views 24 --size 256x256 --reference-spp 256\n"
               "  clvr pairs scan.nii.gz -o test --views 8 --split test --noisy-spp 1,2,4,8\n"
               "  clvr pairs train/pairs.json -o copy   # the same pairs again\n");
+    reads_files(*c, {"--vary-tf"});
+    writes_files(*c, "--output", [o](const std::string& folder) { return written_in(folder, is_plan(o->scene.input)); });
     c->callback([o] { pairs(*o); });
 }
 

@@ -3,6 +3,7 @@
 #include "host/cli/described/help.hpp"
 #include "host/cli/described/share_files.hpp"
 #include "host/cli/described/single_values.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/dataset/manifest.hpp"
 #include "host/selftest/selftest.hpp"
 #include "host/volume/phantom.hpp"
@@ -23,6 +24,7 @@ void add_shared_options(CLI::App& app) {
     app.add_option_function<std::string>("--kernel-dir", set_kernel_dir,
                                          "Folder whose OpenCL files replace the built-in ones of the same path")
         ->type_name("DIR");
+    reads_files(app, {"--config", "--kernel-dir"});
     app.add_flag_callback(
         "-v,--verbose", [] { spdlog::set_level(spdlog::level::debug); }, "Say more about what is done");
     app.add_flag_callback(
@@ -61,6 +63,7 @@ void add_program(CLI::App& app) {
                "  0 done, 2 wrong usage, 3 bad input, 4 no such device, 5 out of memory,\n"
                "  6 internal error, 130 interrupted\n");
     take_single_values(app);
+    app.parse_complete_callback([&app] { check_files(app); });
     use_help_text(app);
 }
 

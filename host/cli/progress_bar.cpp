@@ -35,7 +35,7 @@ void ProgressBar::update(double done, const std::string& note) {
     std::string bar;
     for (int k = 0; k < width; ++k) bar += k < full ? "█" : "░";
     const std::string left = done > 0.01 ? duration_text(seconds() * (1 - done) / done) + " left" : "";
-    fmt::print(stderr, "\r\033[K{} {} {:3.0f} %  {}  {}", label_, bar, 100 * done, note, left);
+    std::fputs(fmt::format("\r\033[K{} {} {:3.0f} %  {}  {}", label_, bar, 100 * done, note, left).c_str(), stderr);
     std::fflush(stderr);
 }
 

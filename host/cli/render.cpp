@@ -1,13 +1,13 @@
 // clvr render: a volume or a scene to pictures.
 #include "host/cli/commands.hpp"
 #include "host/cli/first_word.hpp"
-#include "host/cli/interrupt.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/picture_outputs.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/denoise/denoiser.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/io/scene/scene_file.hpp"
@@ -16,6 +16,7 @@
 #include "host/render/renderer.hpp"
 #include "runtime/embedded.hpp"
 #include "runtime/sha256.hpp"
+#include "runtime/signals.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -27,11 +28,6 @@
 namespace clvr {
 
 namespace {
-
-std::string numbered(const std::string& path, int frame) {
-    const std::filesystem::path p(path);
-    return (p.parent_path() / fmt::format("{}_{:03}{}", p.stem().string(), frame, p.extension().string())).string();
-}
 
 void print_presets() {
     for (const auto& p : transfer_presets()) fmt::print("{:<16} {}\n", p.name, p.description);
@@ -106,7 +102,7 @@ int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene,
 std::string new_picture_beside(const RenderOptions& o) {
     const std::string picture = picture_beside(o.input);
     std::error_code failed;
-    if (std::filesystem::exists(o.turntable > 0 ? numbered(picture, 0) : picture, failed))
+    if (std::filesystem::exists(o.turntable > 0 ? view_path(picture, 0) : picture, failed))
         throw Error(ErrorKind::usage, "exists; add -o " + picture + " to replace it, or -o with another name", picture);
     return picture;
 }
@@ -115,11 +111,14 @@ void render(RenderOptions o) {
     if (o.list_transfer) return print_presets();
     if (o.input.empty())
         throw Error(ErrorKind::usage, "no volume given: name a file or folder, or demo:head for the built-in one", "clvr render");
-    if (o.outputs.empty() && o.beside) o.outputs.push_back(new_picture_beside(o));
+    if (o.outputs.empty() && o.beside) {
+        o.outputs.push_back(new_picture_beside(o));
+        for (const std::string& path : view_paths(o.outputs.front(), o.turntable)) will_write(path, "clvr render");
+    }
     if (o.outputs.empty())
         throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .jpg, or .exr for all channels)", "clvr render");
-    if (o.turntable < 0 || o.turntable > 10000)
-        throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
+    if (o.turntable < 0 || o.turntable > largest_turntable)
+        throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.turntable, largest_turntable), "--turntable");
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
     Scene scene = scene_of(o);
     if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
@@ -134,7 +133,7 @@ void render(RenderOptions o) {
     const EnvironmentTables environment = read_environment(scene, &notes);
     for (const auto& note : notes) spdlog::debug("{}: {}", scene.light.image, note);
     std::vector<Device> devices = open_devices(o.devices);
-    const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(scene.volume, scene.reading, device); }));
+    const PreparedVolume volume(open_volume(scene.volume, scene.reading, devices));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
         const std::string hash = volume_sha256(volume.voxels);
         if (!scene.volume_sha256.empty() && scene.volume_sha256 != hash)
@@ -161,7 +160,7 @@ void render(RenderOptions o) {
     for (int view = 0; view < std::max(1, o.turntable) && !interrupted; ++view) {
         std::vector<std::string> outputs = o.outputs;
         if (o.turntable > 0) {
-            for (auto& path : outputs) path = numbered(path, view);
+            for (auto& path : outputs) path = view_path(path, view);
             scene.camera.azimuth = azimuth + 360.0 * view / o.turntable;
             scene.view = view;
             renderer.aim(scene.camera, scene.view);

@@ -1,4 +1,5 @@
 #include "host/cli/render_options.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/volume_options.hpp"
 #include "host/io/atomic_file.hpp"
@@ -112,6 +113,18 @@ TransferFunction transfer_of(const std::string& name) {
 
 } // namespace
 
+std::string view_path(const std::string& path, int view) {
+    const std::filesystem::path p(path);
+    return (p.parent_path() / fmt::format("{}_{:03}{}", p.stem().string(), view, p.extension().string())).string();
+}
+
+std::vector<std::string> view_paths(const std::string& path, int views) {
+    if (views <= 0 || views > largest_turntable) return {path};
+    std::vector<std::string> paths;
+    for (int view = 0; view < views; ++view) paths.push_back(view_path(path, view));
+    return paths;
+}
+
 void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_option("VOLUME", o.input, "Volume file or folder, scene JSON, or demo:head and the like")->type_name("FILE|DIR|DEMO");
     c.add_option("--size", o.size, "Picture size [640x640]")->type_name("WxH")->group("Output");
@@ -169,6 +182,7 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
         ->type_name("1|4")
         ->group("Sampling");
 
+    reads_files(c, {"VOLUME", "--tf", "--environment"});
     add_volume_options(c, o.volume);
     add_device_options(c, o.devices, "render");
 }
@@ -190,6 +204,9 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
     c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Output");
     c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Output");
     c.add_flag("--list-tf", o.list_transfer, "List the presets of --tf")->group("Look");
+    reads_files(c, {"--model"});
+    writes_files(c, "--output", [&o](const std::string& path) { return view_paths(path, o.turntable); });
+    writes_files(c, "--save-scene");
 }
 
 Scene scene_of(const RenderOptions& o) {

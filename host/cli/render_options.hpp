@@ -29,6 +29,12 @@ struct RenderOptions {
     DeviceOptions devices;
 };
 
+inline constexpr int largest_turntable = 10000; ///< views
+/// Where a view of a turntable goes: picture_000.png and so on.
+std::string view_path(const std::string& path, int view);
+/// The files of an output: itself, or with --turntable (`views` above 0) one a view.
+std::vector<std::string> view_paths(const std::string& path, int views);
+
 /// The options that say what is seen: volume, transfer function, camera, light, size, samples. `device` options too.
 void add_scene_options(CLI::App& command, RenderOptions& options);
 /// Those and what becomes of the picture.

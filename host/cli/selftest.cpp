@@ -5,6 +5,7 @@
 #include "runtime/error.hpp"
 #include "runtime/json_text.hpp"
 #include "runtime/select.hpp"
+#include "runtime/signals.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -112,14 +113,17 @@ void selftest_command(const Options& o) {
     if (child < 0) throw Error(ErrorKind::memory, "no child process can be started");
     if (child == 0) {
         prctl(PR_SET_PDEATHSIG, SIGTERM); // ends with this process
+        watch_signals("clvr");
         return test_devices(o, wanted, running);
     }
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    if (WIFEXITED(status)) std::_Exit(WEXITSTATUS(status)); // the child has said everything
-    throw Error(ErrorKind::device, fmt::format("the driver ended the program ({}) in: {}; update it or choose another --device",
-                                               strsignal(WTERMSIG(status)), running.text));
+    constexpr int by_llvm = 1; // its exit code where it gives up, and none of clvr's
+    if (WIFEXITED(status) && WEXITSTATUS(status) != by_llvm) std::_Exit(WEXITSTATUS(status)); // the child has said everything
+    const std::string how = WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status)) : strsignal(WTERMSIG(status));
+    throw Error(ErrorKind::device,
+                fmt::format("the driver ended the program ({}) in: {}; update it or choose another --device", how, running.text));
 }
 
 } // namespace

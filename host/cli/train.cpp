@@ -1,12 +1,13 @@
 // clvr train: folders of pairs to a model.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
-#include "host/cli/interrupt.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/signals.hpp"
 
 #include <cstdio>
 #include <fmt/format.h>
@@ -189,6 +190,8 @@ void add_train_command(CLI::App& app) {
               "  clvr train a b c -o mine.safetensors --validate test\n"
               "  clvr train pairs -o mine.safetensors --resume\n");
     add_device_options(*c, o->device, "train");
+    reads_files(*c, {"DIR", "--validate", "--init"});
+    writes_files(*c, "--output", training_files);
     c->callback([o] { train(*o); });
 }
 

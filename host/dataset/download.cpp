@@ -147,6 +147,8 @@ bool transfer(const Download& what, const std::string& part, const std::function
 
 } // namespace
 
+std::vector<std::string> download_files(const std::string& path) { return {path + ".part", path}; }
+
 void download(const Download& what, const std::function<void(std::uint64_t)>& progress, const std::atomic<bool>* cancelled) {
     static const CURLcode started = curl_global_init(CURL_GLOBAL_DEFAULT);
     if (started != CURLE_OK) throw Error(ErrorKind::internal, "libcurl cannot start");
@@ -157,7 +159,7 @@ void download(const Download& what, const std::function<void(std::uint64_t)>& pr
         if (right(what.path)) return;
         throw Error(ErrorKind::input, "is there already, with other content; remove it, or name another --dir", what.path);
     }
-    const std::string part = what.path + ".part";
+    const std::string part = download_files(what.path).front();
     if (size_of(part) > what.bytes) fs::remove(part);
     double pause = what.pause;
     std::string why;
@@ -165,7 +167,8 @@ void download(const Download& what, const std::function<void(std::uint64_t)>& pr
         if (attempt >= what.attempts)
             throw Error(ErrorKind::input, fmt::format("{} attempts failed; at last: {}. The same command goes on from here", attempt, why),
                         what.url);
-        std::this_thread::sleep_for(std::chrono::duration<double>(pause));
+        for (double left = pause; left > 0 && !(cancelled && *cancelled); left -= 0.1)
+            std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left, 0.1)));
         pause *= 2;
     }
     if (!right(part)) {

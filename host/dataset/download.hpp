@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace clvr {
 
@@ -21,5 +22,8 @@ struct Download {
 /// lies there already and is right. `progress` gets the bytes that are there. Throws Error{input}: what the server answered, a wrong size
 /// or checksum (the damaged part is removed), an existing file of other content; Error{interrupted}.
 void download(const Download& what, const std::function<void(std::uint64_t)>& progress = {}, const std::atomic<bool>* cancelled = nullptr);
+
+/// The files that a download to `path` writes: itself last.
+std::vector<std::string> download_files(const std::string& path);
 
 } // namespace clvr

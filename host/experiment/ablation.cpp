@@ -191,6 +191,18 @@ TrainerConfig ablation_training() {
     return t;
 }
 
+std::vector<std::string> ablation_files(const std::string& folder) {
+    const auto path = [&](const std::string& name) { return (fs::path(folder) / name).string(); };
+    std::vector<std::string> files = {path("settings.json"), path("stages.json"), path("ablation.json"), path("ablation.md"),
+                                      path("noisy.json")};
+    for (const AblationRow& row : ablation_rows()) {
+        const std::vector<std::string> training = training_files(path(row.name + ".safetensors"));
+        files.insert(files.end(), training.begin(), training.end());
+        files.push_back(path(row.name + ".json"));
+    }
+    return files;
+}
+
 std::vector<AblationResult> run_ablation(const AblationSettings& s, const std::string& folder, const Device& device,
                                          const Provenance& provenance, const ExperimentControl& control) {
     const std::vector<AblationRow> rows = chosen(s.rows);

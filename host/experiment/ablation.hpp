@@ -56,4 +56,7 @@ std::string markdown_tables(const std::vector<AblationResult>& results);
 std::vector<AblationResult> run_ablation(const AblationSettings& settings, const std::string& folder, const Device& device,
                                          const Provenance& provenance, const ExperimentControl& control);
 
+/// The files that an ablation writes in its folder.
+std::vector<std::string> ablation_files(const std::string& folder);
+
 } // namespace clvr

@@ -170,6 +170,13 @@ private:
 
 } // namespace
 
+std::vector<std::string> experiment_files(const std::string& folder) {
+    std::vector<std::string> files = training_files((fs::path(folder) / "model.safetensors").string());
+    for (const char* name : {"experiment.json", "stages.json", "evaluation.json", "results.json", "results.md", "report.html"})
+        files.push_back((fs::path(folder) / name).string());
+    return files;
+}
+
 Voxels experiment_volume(const ExperimentSettings& s, const std::string& folder, Device& device, const std::atomic<bool>& interrupted) {
     const std::string path = volume_path(s, folder);
     if (s.computed.empty()) return read_volume(path, s.scene.reading);

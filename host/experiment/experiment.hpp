@@ -39,4 +39,7 @@ ExperimentOutcome run_experiment(const ExperimentSettings& settings, const std::
 Voxels experiment_volume(const ExperimentSettings& settings, const std::string& folder, Device& device,
                          const std::atomic<bool>& interrupted);
 
+/// The files that an experiment writes in its folder more than once, or without looking whether they are there.
+std::vector<std::string> experiment_files(const std::string& folder);
+
 } // namespace clvr

@@ -1,15 +1,14 @@
 #include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/temporary.hpp"
 
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <random>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,33 +30,15 @@ struct Descriptor {
     }
 };
 
-/// A fresh empty file in a folder, removed on destruction unless it was renamed away.
-class TemporaryFile {
-public:
-    TemporaryFile(const fs::path& folder, const std::string& wanted_path) {
-        static std::atomic<unsigned> counter{0};
-        static const unsigned process_word = std::random_device{}();
-        for (int attempt = 0; attempt < 100; ++attempt) {
-            path_ = (folder / fmt::format(".clvr-{}-{:08x}-{}.tmp", ::getpid(), process_word, counter++)).string();
-            const Descriptor made(::open(path_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666)); // the umask applies
-            if (made.fd >= 0) return;
-            if (errno != EEXIST) break;
-        }
-        const std::string why = reason();
-        path_.clear();
-        throw Error(ErrorKind::input, fmt::format("cannot write here: {}; choose a folder that exists and is writable", why), wanted_path);
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-    ~TemporaryFile() {
-        if (!path_.empty()) ::unlink(path_.c_str());
-    }
-    const std::string& path() const { return path_; }
-    void renamed() { path_.clear(); }
-
-private:
-    std::string path_;
-};
+/// A fresh empty file in a folder. Throws Error{input} naming `wanted_path`.
+Temporary temporary_in(const fs::path& folder, const std::string& wanted_path) {
+    remove_stale_files(folder.string());
+    Temporary made = Temporary::file_in(folder.string());
+    if (made.path().empty())
+        throw Error(ErrorKind::input, fmt::format("cannot write here: {}; choose a folder that exists and is writable", reason()),
+                    wanted_path);
+    return made;
+}
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
@@ -94,17 +75,17 @@ void check_writable(const std::string& path) {
     if (const auto longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
         longest > 0 && place.filename().string().size() > static_cast<std::size_t>(longest))
         throw Error(ErrorKind::input, fmt::format("the file name is longer than the {} bytes that the folder allows", longest), path);
-    TemporaryFile(folder, path);
+    temporary_in(folder, path);
 }
 
 void write_atomically(const std::string& path, const std::function<void(const std::string& temporary_path)>& write) {
     check_writable(path);
     const fs::path place = final_place(path);
-    TemporaryFile temporary(folder_of(place), path);
+    Temporary temporary = temporary_in(folder_of(place), path);
     write(temporary.path());
     synchronise(temporary.path(), O_RDONLY);
     if (std::rename(temporary.path().c_str(), place.c_str()) != 0) throw Error(ErrorKind::input, "cannot be replaced: " + reason(), path);
-    temporary.renamed();
+    temporary.give_up();
     synchronise(folder_of(place).string(), O_RDONLY | O_DIRECTORY);
 }
 

@@ -1,4 +1,5 @@
 #include "host/io/byte_stream.hpp"
+#include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -41,6 +42,7 @@ struct ByteStream::Inflater {
 };
 
 ByteStream::ByteStream(const std::string& path, Coding coding, std::uint64_t offset) : path_(path), file_(open(path)) {
+    will_read(path);
     const std::uint64_t size = std::filesystem::file_size(path);
     capacity_ = size > offset ? size - offset : 0;
     if (std::fseek(file_.get(), static_cast<long>(std::min(offset, size)), SEEK_SET) != 0) unreadable(path);
@@ -129,24 +131,20 @@ ByteStream open_inside(const std::string& path) {
     return ByteStream(path, is_gzip(path) ? ByteStream::Coding::deflated : ByteStream::Coding::plain);
 }
 
-namespace {
-
-std::string first_bytes(ByteStream& stream, std::size_t limit) {
-    std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, stream.capacity())), '\0');
-    head.resize(stream.read(head.data(), head.size()));
+std::string read_head(const std::string& path, std::size_t limit) {
+    const auto file = open(path); // no ByteStream: whoever looks at a file's head need not take it as an input
+    std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, std::filesystem::file_size(path))), '\0');
+    head.resize(std::fread(head.data(), 1, head.size(), file.get()));
+    if (std::ferror(file.get())) unreadable(path);
     return head;
 }
 
-} // namespace
-
-std::string read_head(const std::string& path, std::size_t limit) {
-    ByteStream stream(path, ByteStream::Coding::plain);
-    return first_bytes(stream, limit);
-}
-
 std::string read_head_inside(const std::string& path, std::size_t limit) {
-    ByteStream stream = open_inside(path);
-    return first_bytes(stream, limit);
+    if (!is_gzip(path)) return read_head(path, limit);
+    ByteStream stream(path, ByteStream::Coding::deflated);
+    std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, stream.capacity())), '\0');
+    head.resize(stream.read(head.data(), head.size()));
+    return head;
 }
 
 } // namespace clvr

@@ -22,22 +22,30 @@ const char* opencl_type(VoxelType t) {
     return "uchar";
 }
 
+[[noreturn]] void refuse_tunable(const std::string& name, int value, const std::string& expected) {
+    throw Error(ErrorKind::usage, "is " + std::to_string(value) + "; expected " + expected, "tunable " + name);
+}
+
 constexpr std::size_t upload_piece = std::size_t{4} << 20; // [bytes]: the host never holds a second copy of the volume
 
 } // namespace
 
 int packet_width(const Device& device) {
     const DeviceFacts& f = device.facts();
-    const int fallback = f.type != DeviceType::cpu ? 1 : f.native_float_width >= 16 ? 16 : f.native_float_width >= 8 ? 8 : 4;
+    const int fallback = f.type != DeviceType::cpu || f.simulator ? 1 : f.native_float_width >= 16 ? 16 : f.native_float_width >= 8 ? 8 : 4;
     const int width = device.tunable("packet", fallback);
-    if (width != 1 && width != 4 && width != 8 && width != 16)
-        throw Error(ErrorKind::usage, "is " + std::to_string(width) + "; expected 1, 4, 8 or 16", "tunable packet");
+    if (width != 1 && width != 4 && width != 8 && width != 16) refuse_tunable("packet", width, "1, 4, 8 or 16");
     return width;
+}
+
+std::size_t packet_group(const Device& device, int width) {
+    return static_cast<std::size_t>(device.tunable("packet_group", width > 1 || device.facts().simulator ? 1 : 64));
 }
 
 BrickLayout device_layout(const Device& device, const Classified& c) {
     constexpr int usual = 5;
     const int by_dims = brick_log2_edge(c.voxels->dims), log2_edge = by_dims == usual ? device.tunable("brick_log2", usual) : by_dims;
+    if (log2_edge < 2 || log2_edge > 8) refuse_tunable("brick_log2", log2_edge, "2 to 8");
     return brick_layout(*c.voxels, *c.grid, c.majorants, log2_edge, device.max_alloc_bytes());
 }
 

@@ -21,7 +21,7 @@ Marcher::Marcher(Device& device, const DeviceVolume& volume, const LightTables& 
 }
 
 void Marcher::run(std::uint32_t first_pixel, std::uint32_t pixels, std::vector<float>& planes, std::size_t stride, std::size_t offset) {
-    const Range group = kernel_.group(static_cast<std::size_t>(device_.tunable("packet_group", width_ == 1 ? 64 : 1)));
+    const Range group = kernel_.group(packet_group(device_, width_));
     for (std::uint32_t done = 0; done < pixels; done += at_once_) {
         const std::uint32_t n = std::min(at_once_, pixels - done);
         device_.launch(kernel_, {(n + width_ - 1) / width_}, group, {}, volume_.arguments(), light_.render(), first_pixel + done, n,

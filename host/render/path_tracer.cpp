@@ -27,8 +27,8 @@ PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTa
     : device_(device), volume_(volume), light_(&light), width_(packet_width(device)) {
     capacity_ = wave_paths(device, pixels);
     run_ = std::max(1, device.tunable("packet_run", width_ == 1 ? 1 : 16));
-    per_packet_ = static_cast<std::size_t>(device.tunable("packet_group", width_ == 1 ? 64 : 1));
-    per_path_ = static_cast<std::size_t>(device.tunable("shade_group", 64));
+    per_packet_ = packet_group(device, width_);
+    per_path_ = static_cast<std::size_t>(device.tunable("shade_group", device.facts().simulator ? 1 : 64));
     Defines packet = volume.defines(), scalar = volume.defines();
     packet["CLVR_WIDTH"] = std::to_string(width_);
     packet["CLVR_RUN"] = std::to_string(run_);

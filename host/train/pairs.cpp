@@ -1,5 +1,6 @@
 #include "host/train/pairs.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
 
 #include <filesystem>
@@ -10,6 +11,7 @@ namespace clvr {
 namespace fs = std::filesystem;
 
 std::string noisy_name(int view, int frame) { return fmt::format("view_{:04}_noisy_{}.exr", view, frame); }
+bool is_frame_name(const std::string& name) { return name.rfind("view_", 0) == 0 && std::filesystem::path(name).extension() == ".exr"; }
 std::string reference_name(int view) { return fmt::format("view_{:04}_reference.exr", view); }
 
 PairsFolder read_pairs(const std::string& folder) {
@@ -21,6 +23,7 @@ PairsFolder read_pairs(const std::string& folder) {
     int views = 0, frames = 0, reference_spp = 0;
     try {
         const nlohmann::json plan = nlohmann::json::parse(read_text(path));
+        will_read(path);
         if (plan.at("clvr.format") != "pairs/1") throw Error(ErrorKind::input, "is of another format; expected pairs/1", path);
         pairs.split = plan.at("split").get<std::string>();
         views = static_cast<int>(plan.at("views").size());

@@ -19,6 +19,7 @@ struct PairsFolder {
 
 /// Names of a folder's frames.
 std::string noisy_name(int view, int frame);
+bool is_frame_name(const std::string& name); ///< one of these
 std::string reference_name(int view);
 
 /// Reads DIR/pairs.json and checks that all its frames are there (not their pixels). Throws Error{input}: no such file, not complete,

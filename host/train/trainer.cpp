@@ -71,9 +71,15 @@ std::string configuration_of(const Model& model, const TrainerConfig& c, const s
     return all.dump();
 }
 
+std::string checkpoint_of(const std::string& output) { return stem_of(output) + ".checkpoint"; }
+
 } // namespace
 
 std::string training_csv(const std::string& output) { return stem_of(output) + ".training.csv"; }
+
+std::vector<std::string> training_files(const std::string& output) {
+    return {output, training_csv(output), stem_of(output) + ".last.safetensors", checkpoint_of(output)};
+}
 
 struct Trainer::State {
     std::vector<Device> validators; // the first one that can validates
@@ -133,7 +139,7 @@ struct Trainer::State {
         };
         write_model(noted(step.model()), stem + ".last.safetensors");
         write_model(noted(validation.empty() ? step.model() : checkpoint.best), output);
-        write_checkpoint(checkpoint, step.model(), stem + ".checkpoint");
+        write_checkpoint(checkpoint, step.model(), checkpoint_of(output));
     }
 
     /// Adds the losses of the steps since the last time; the number of the first one that is NaN (or that left weights that are), or -1.
@@ -184,7 +190,7 @@ Trainer::Trainer(const std::vector<Device>& devices, const Model& model, const T
         }
     s.checkpoint.configuration = configuration_of(model, config, names);
     if (resume) {
-        s.checkpoint = read_checkpoint(stem_of(output) + ".checkpoint", s.checkpoint.configuration);
+        s.checkpoint = read_checkpoint(checkpoint_of(output), s.checkpoint.configuration);
         s.step.set_state(s.checkpoint.state);
     }
 }

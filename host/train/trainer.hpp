@@ -63,6 +63,8 @@ private:
 
 /// Where the training of a model file leaves its curve: <output>.training.csv (epoch, loss, validation_psnr).
 std::string training_csv(const std::string& output);
+/// All files that the training of a model file writes, itself first.
+std::vector<std::string> training_files(const std::string& output);
 
 /// The crops of an epoch in the order of its steps: `patches` of each view, of one of its `frames` images (view * frames + frame),
 /// shuffled. A function of its arguments alone. `width`, `height` per view.

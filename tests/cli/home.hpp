@@ -24,17 +24,18 @@ class Program : public testing::Test {
 protected:
     TemporaryFolder home;
 
-    Child start(const std::vector<std::string>& arguments, Environment environment = {}) const {
+    Child start(const std::vector<std::string>& arguments, Environment environment = {}, const std::function<void()>& prepare = {}) const {
         const Environment usual{{"HOME", home.path().string()},
                                 {"XDG_CACHE_HOME", std::nullopt},
                                 {"XDG_CONFIG_HOME", std::nullopt},
                                 {"CLVR_DEVICE", std::nullopt},
                                 {"POCL_CACHE_DIR", pocl_cache()}};
         environment.insert(usual.begin(), usual.end());
-        return {arguments, environment, home.path()};
+        return {arguments, environment, home.path(), prepare};
     }
-    Outcome run(const std::vector<std::string>& arguments, const Environment& environment = {}) const {
-        return start(arguments, environment).wait();
+    Outcome run(const std::vector<std::string>& arguments, const Environment& environment = {},
+                const std::function<void()>& prepare = {}) const {
+        return start(arguments, environment, prepare).wait();
     }
 
     /// A volume of 16x16x16 bytes.

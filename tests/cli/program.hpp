@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -26,7 +27,9 @@ using Environment = std::map<std::string, std::optional<std::string>>;
 /// A program on its way.
 class Child {
 public:
-    Child(const std::vector<std::string>& arguments, const Environment& environment, const std::filesystem::path& folder)
+    /// `prepare` is called in the child before the program begins: to close or redirect streams, set limits, ignore signals.
+    Child(const std::vector<std::string>& arguments, const Environment& environment, const std::filesystem::path& folder,
+          const std::function<void()>& prepare = {})
         : out_(folder / ("out" + std::to_string(count()))), err_(out_.string() + ".err") {
         std::vector<char*> argv{const_cast<char*>(CLVR_PROGRAM)};
         for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -37,6 +40,8 @@ public:
         const int out = open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600),
                   err = open(err_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
         if (out < 0 || err < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(99);
+        close(out), close(err);
+        if (prepare) prepare();
         execv(CLVR_PROGRAM, argv.data());
         _exit(99);
     }

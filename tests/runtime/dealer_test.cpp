@@ -136,6 +136,18 @@ TEST(Dealer, EachLeavesOutThoseThatFail) {
     EXPECT_THAT(warnings.text(), testing::HasSubstr("a failed and is left out"));
 }
 
+TEST(Dealer, WhatNoDeviceCanDoIsNoDevicesFailure) {
+    const Warnings warnings;
+    Dealer dealer(three);
+    try {
+        dealer.each([](std::size_t) { throw Error(ErrorKind::memory, "the volume is too large"); });
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.kind(), ErrorKind::memory);
+    }
+    EXPECT_EQ(warnings.text(), "");
+}
+
 TEST(Dealer, ComparesAndLeavesOutTheOddOne) {
     const Warnings warnings;
     Dealer dealer(three);

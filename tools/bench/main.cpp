@@ -2,9 +2,11 @@
 #include "host/cli/described/help.hpp"
 #include "host/cli/described/share_files.hpp"
 #include "host/cli/described/single_values.hpp"
+#include "host/cli/file_options.hpp"
 #include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
 #include "runtime/json_text.hpp"
+#include "runtime/program_end.hpp"
 #include "runtime/remembered.hpp"
 #include "runtime/select.hpp"
 #include "tools/bench/bench.hpp"
@@ -18,7 +20,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <new>
 
 namespace clvr::bench {
 namespace {
@@ -110,12 +111,6 @@ void make_page_again(const Options& o) {
     }
 }
 
-int fail(const std::string& what, ErrorKind kind) {
-    std::fflush(stdout);
-    std::fprintf(stderr, "clvr-bench: %s\n", what.c_str());
-    return static_cast<int>(kind);
-}
-
 int run(int argc, char** argv) {
     Options o;
     CLI::App app("Measures every OpenCL device on clvr's real stages, checks its results, tunes, recommends and remembers");
@@ -131,6 +126,9 @@ int run(int argc, char** argv) {
     app.add_option("--json", o.json, "Write all numbers as JSON")->type_name("FILE")->group("Output");
     app.add_option("--html", o.html, "Write a page with tables, bars and rooflines")->type_name("FILE")->group("Output");
     app.add_option("--from", o.from, "Measure nothing: make the page of --html from what --json wrote")->type_name("FILE")->group("Output");
+    reads_files(app, {"--from"});
+    writes_files(app, "--json");
+    writes_files(app, "--html");
     app.add_flag("--save", o.save, "Remember the recommended devices for the next runs of clvr")->group("Output");
     app.add_flag("--explain", o.explain, "Print the evidence for what is recommended")->group("Output");
     app.add_option("--device", o.selector,
@@ -148,13 +146,14 @@ int run(int argc, char** argv) {
     app.add_flag("--hashes", o.hashes, "Print the hash of each result")->group("");
     take_single_values(app);
     use_help_text(app);
+    app.parse_complete_callback([&app] { check_files(app); });
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // help and version
         std::string what = error.what();
         std::replace(what.begin(), what.end(), '\n', ' ');
-        return fail(what + " (see clvr-bench --help)", ErrorKind::usage);
+        throw Error(ErrorKind::usage, what + " (see clvr-bench --help)");
     }
     if (o.child) return serve();
     if (!o.from.empty()) {
@@ -172,13 +171,5 @@ int main(int argc, char** argv) {
     auto logger = spdlog::stderr_color_mt("clvr-bench");
     logger->set_pattern("%n: %^%l%$: %v");
     spdlog::set_default_logger(std::move(logger));
-    try {
-        return clvr::bench::run(argc, argv);
-    } catch (const clvr::Error& error) {
-        return clvr::bench::fail(error.line(), error.kind());
-    } catch (const std::bad_alloc&) {
-        return clvr::bench::fail("out of memory", clvr::ErrorKind::memory);
-    } catch (const std::exception& error) {
-        return clvr::bench::fail(std::string("internal error: ") + error.what(), clvr::ErrorKind::internal);
-    }
+    return clvr::run_program("clvr-bench", clvr::bench::run, argc, argv);
 }

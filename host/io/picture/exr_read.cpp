@@ -1,4 +1,5 @@
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/picture/exr_library.hpp"
 #include "host/io/picture/exr_names.hpp"
 #include "host/io/picture/frame_file.hpp"
@@ -241,6 +242,7 @@ Frame read_all(const std::string& path) {
 } // namespace
 
 Frame read_exr(const std::string& path) {
+    will_read(path);
     check_readable(path);
     try {
         return read_all(path);

@@ -1,4 +1,5 @@
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 
@@ -36,6 +37,7 @@ PictureFormat picture_format(const std::string& path) {
 }
 
 Frame read_picture(const std::string& path) {
+    will_read(path);
     switch (picture_format(path)) {
     case PictureFormat::exr:
         return read_exr(path);

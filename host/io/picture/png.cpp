@@ -1,4 +1,5 @@
 #include "host/io/atomic_file.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/picture/display_pixels.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
@@ -36,6 +37,7 @@ void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& pa
 }
 
 Frame read_png(const std::string& path) {
+    will_read(path);
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     const std::unique_ptr<png_image, void (*)(png_image*)> guard(&image, png_image_free);

@@ -1,4 +1,5 @@
 // JPEG pictures of grey values: one slice, or a folder of them.
+#include "host/io/file_roles.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/slice_stack.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 class JpegSlice : public SliceImage {
 public:
     explicit JpegSlice(const std::string& path) : path_(path), handle_(tjInitDecompress(), &tjDestroy) {
+        will_read(path);
         if (!handle_) throw std::bad_alloc();
         const auto bytes = std::filesystem::file_size(path);
         constexpr std::uint64_t most = std::uint64_t{1} << 31, greatest_ratio = 1032;

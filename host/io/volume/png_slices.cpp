@@ -1,4 +1,5 @@
 // PNG pictures of grey values: one slice, or a folder of them. Values are taken as stored: no gamma, no colour management.
+#include "host/io/file_roles.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/slice_stack.hpp"
 
@@ -37,6 +38,7 @@ public:
         : path_(path), file_(std::fopen(path.c_str(), "rb"), &std::fclose),
           png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &complaint_, complain, ignore)),
           info_(png_ ? png_create_info_struct(png_) : nullptr) {
+        will_read(path);
         if (!file_) fail_and_free("cannot be opened");
         if (!png_ || !info_) throw std::bad_alloc();
         png_set_user_limits(png_, 0x7fffffff, 0x7fffffff);

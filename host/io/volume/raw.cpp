@@ -1,4 +1,5 @@
 // RAW volumes: bare samples, described by the file's name, a JSON sidecar or the command line.
+#include "host/io/file_roles.hpp"
 #include "host/io/volume/header_text.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
@@ -54,6 +55,7 @@ std::array<double, N> numbers(const nlohmann::json& j, const char* key, const st
 /// Fields: dims (or size), type, endian, spacing [mm], origin [mm, LPS], direction (9 numbers, rows), slope, intercept, modality. Others
 /// are left alone, so that the metadata files of the Open SciVis Datasets serve as they are.
 void from_sidecar(Description& d, const std::string& path) {
+    will_read(path);
     std::ifstream in(path);
     const auto j = nlohmann::json::parse(in, nullptr, false);
     if (!j.is_object()) bad_file(path, "not a JSON object: expected {{\"dims\": [W, H, D], \"type\": \"uint8\", \"spacing\": [1, 1, 1]}}");

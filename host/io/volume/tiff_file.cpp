@@ -1,4 +1,5 @@
 #include "host/io/volume/tiff_file.hpp"
+#include "host/io/file_roles.hpp"
 
 #include <algorithm>
 #include <array>
@@ -23,6 +24,7 @@ std::string text_of(const char* format, va_list arguments) {
 } // namespace
 
 TiffFile::TiffFile(const std::string& path) : path_(path), raw_(nullptr, &std::fclose), handle_(nullptr, &TIFFClose) {
+    will_read(path);
     const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), &TiffFile::complain, this);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), &TiffFile::warn, this);

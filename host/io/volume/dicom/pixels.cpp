@@ -1,4 +1,5 @@
 #include "host/io/volume/dicom/pixels.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/volume/dicom/codecs.hpp"
 #include "host/io/volume/samples.hpp"
 
@@ -151,6 +152,7 @@ bool decode_fragments(const DicomFrame& frame, std::vector<unsigned char>& to) {
 } // namespace
 
 DicomPixelReader::DicomPixelReader(std::vector<const DicomFrame*> order) : order_(std::move(order)) {
+    for (const DicomFrame* frame : order_) will_read(frame->image->path);
     if (std::any_of(order_.begin(), order_.end(), [](const DicomFrame* f) { return f->image->file.encapsulated; })) start_child();
 }
 

@@ -1,0 +1,54 @@
+#include "host/cli/file_options.hpp"
+#include "host/io/file_roles.hpp"
+
+#include <map>
+
+namespace clvr {
+
+namespace {
+
+std::map<const CLI::Option*, FileOption>& declared() {
+    static std::map<const CLI::Option*, FileOption> all;
+    return all;
+}
+
+/// Calls visit(option) for those of the program and of the commands that were called.
+template <class Visit>
+void each_given(const CLI::App& app, Visit&& visit) {
+    for (const CLI::Option* option : app.get_options())
+        if (option->count() > 0) visit(option);
+    for (const CLI::App* command : app.get_subcommands()) each_given(*command, visit);
+}
+
+} // namespace
+
+void reads_files(CLI::App& command, const std::vector<std::string>& options) {
+    for (const std::string& option : options) declared()[command.get_option(option)].read = true;
+}
+
+void writes_files(CLI::App& command, const std::string& option, WrittenFiles files) {
+    if (!files) files = [](const std::string& value) { return std::vector{value}; };
+    FileOption& role = declared()[command.get_option(option)];
+    role.written = true;
+    role.files = std::move(files);
+}
+
+FileOption file_option(const CLI::Option* option) {
+    const auto found = declared().find(option);
+    return found == declared().end() ? FileOption() : found->second;
+}
+
+void check_files(const CLI::App& program) {
+    each_given(program, [](const CLI::Option* option) {
+        if (!file_option(option).read) return;
+        for (const std::string& value : option->results()) will_read(value, option->get_name());
+    });
+    each_given(program, [](const CLI::Option* option) {
+        const FileOption role = file_option(option);
+        if (!role.written) return;
+        for (const std::string& value : option->results())
+            for (const std::string& file : role.files(value)) will_write(file, option->get_name());
+    });
+}
+
+} // namespace clvr

@@ -1,0 +1,104 @@
+#include "host/io/file_roles.hpp"
+#include "runtime/error.hpp"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <sys/stat.h>
+#include <tuple>
+#include <unistd.h>
+
+namespace clvr {
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Device and inode; of a file that is not there yet those of its folder, and its name.
+using Identity = std::tuple<dev_t, ino_t, std::string>;
+
+std::optional<Identity> identity_of(const struct stat& s) {
+    if (!S_ISREG(s.st_mode)) return std::nullopt;
+    return Identity{s.st_dev, s.st_ino, ""};
+}
+
+/// Nothing for what is there and is no regular file.
+std::optional<Identity> identity_of(const std::string& path) {
+    struct stat s {};
+    if (::stat(path.c_str(), &s) == 0) return identity_of(s);
+    std::error_code failed;
+    fs::path place = fs::is_symlink(fs::symlink_status(path, failed)) ? fs::weakly_canonical(path, failed) : fs::path(path);
+    if (failed || place.empty()) place = path;
+    const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
+    if (::stat(folder.c_str(), &s) == 0) return Identity{s.st_dev, s.st_ino, place.filename().string()};
+    return Identity{0, 0, fs::absolute(place, failed).lexically_normal().string()};
+}
+
+struct Named {
+    std::string path, name;
+    std::string text() const { return name.empty() ? path : fmt::format("{} ({})", path, name); }
+};
+
+struct Roles {
+    std::mutex mutex;
+    std::map<Identity, Named> read, written;
+};
+
+Roles& roles() {
+    static Roles all;
+    return all;
+}
+
+[[noreturn]] void refuse(const Named& output, const std::string& is) {
+    throw Error(ErrorKind::usage, fmt::format("{} is {}, which must not be overwritten; choose another name", output.path, is),
+                output.name);
+}
+
+/// Whether standard output or standard error goes to the file.
+bool is_printed_to(const Identity& file) {
+    for (const int fd : {STDOUT_FILENO, STDERR_FILENO}) {
+        struct stat s {};
+        if (::fstat(fd, &s) == 0 && identity_of(s) == file) return true;
+    }
+    return false;
+}
+
+} // namespace
+
+void will_read(const std::string& path, const std::string& name) {
+    std::error_code failed;
+    if (const std::size_t inside = path.find(":/"); inside != path.npos && !fs::exists(path, failed))
+        return will_read(path.substr(0, inside), name); // FILE:/path/of/dataset
+    const auto file = identity_of(path);
+    if (!file) return;
+    const Named input{path, name};
+    Roles& all = roles();
+    const std::lock_guard lock(all.mutex);
+    const auto output = all.written.find(*file);
+    if (output != all.written.end()) refuse(output->second, "the input " + input.text());
+    if (!name.empty() && is_printed_to(*file)) refuse({"standard output", "clvr"}, "the input " + input.text());
+    all.read.emplace(*file, input);
+}
+
+void will_write(const std::string& path, const std::string& name) {
+    const auto file = identity_of(path);
+    if (!file) return;
+    const Named output{path, name};
+    Roles& all = roles();
+    const std::lock_guard lock(all.mutex);
+    const auto input = all.read.find(*file);
+    if (input != all.read.end()) refuse(output, "the input " + input->second.text());
+    if (is_printed_to(*file)) refuse(output, "the file that standard output goes to");
+    const auto [other, is_new] = all.written.emplace(*file, output);
+    if (!is_new) refuse(output, "the output " + other->second.text() + ", too");
+}
+
+void forget_file_roles() {
+    Roles& all = roles();
+    const std::lock_guard lock(all.mutex);
+    all.read.clear();
+    all.written.clear();
+}
+
+} // namespace clvr
