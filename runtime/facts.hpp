@@ -32,8 +32,8 @@ struct DeviceFacts {
 
 struct PlatformFacts {
     std::string name, vendor, version;
-    std::string problem;              ///< of its driver: none of its devices is usable
     std::vector<DeviceFacts> devices; ///< may be empty: a platform without devices is a fact, too
+    std::string problem = {};         ///< of its driver: none of its devices is usable
 };
 
 /// Why clvr cannot run on the device, in words; empty when it can.
