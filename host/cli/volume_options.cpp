@@ -64,10 +64,16 @@ void add_volume_options(CLI::App& command, VolumeReadOptions& options) {
         ->type_name("N")
         ->group(group);
     command.add_option("--array", options.array, "VTK: the data array of this name [the active one]")->type_name("NAME")->group(group);
-    command.add_option("--series", options.series, "DICOM: the series with this UID [the one with the most slices that make a volume]")
+    command
+        .add_option(
+            "--series", options.series,
+            "DICOM: the series with this UID [the one with the most slices that make a volume]; OME-TIFF: the image of this name or number")
         ->type_name("UID")
         ->group(group);
-    command.add_flag("--allow-gaps", options.allow_gaps, "DICOM: interpolate missing slices")->group(group);
+    command
+        .add_flag("--allow-gaps", options.allow_gaps,
+                  "DICOM: interpolate missing slices; folders of pictures: take the slices that are there as neighbours")
+        ->group(group);
     command.add_flag("--recursive", options.recursive, "A folder: look into the folders inside it too")->group(group);
     command
         .add_option_function<std::string>(

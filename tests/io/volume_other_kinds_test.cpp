@@ -41,6 +41,15 @@ TEST(OtherKinds, AreKnownByTheirNamesInAnyCase) {
         expect_error([&] { read_volume(write(folder / name, "some bytes of another kind")); }, {word});
 }
 
+TEST(OtherKinds, ARawNameDoesNotHideAMark) {
+    const Folder folder;
+    const Sample s;
+    EXPECT_EQ(read_volume(write(folder / "a.raw", numpy(s))).format, "NumPy");
+    EXPECT_EQ(read_volume(write(folder / "b.RAW", nrrd_header(s, "raw") + "\n" + bytes_of(s.voxels))).format, "NRRD");
+    const std::string like_tiff = std::string("II*\0", 4) + std::string(60, '\1');
+    EXPECT_EQ(read_volume(write(folder / "c_4x4x4_uint8.raw", like_tiff)).format, "RAW");
+}
+
 TEST(OtherKinds, AZarrFolderIsNamed) {
     const Folder folder;
     write(folder / "a.zarr/.zgroup", "{}");

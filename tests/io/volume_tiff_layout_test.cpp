@@ -261,7 +261,9 @@ TEST_F(TiffLayouts, PlanesBehindOneDirectory) {
     expect_error([&] { read_volume(file(described_tiff(1, "ImageJ=1.53t\nimages=600\n"))); }, {"600 images", "1 page"});
     expect_error([&] { read_volume(file(described_tiff(1, "ImageJ=1.53t\nimages=2147483647\nslices=2147483647\nchannels=99999\n"))); },
                  {"images"});
-    expect_error([&] { read_volume(file(described_tiff(6, "ImageJ=1.53t\nimages=8\nslices=8\n"))); }, {"8 slices", "6 pages"});
+    const Voxels fewer = read_volume(file(described_tiff(6, "ImageJ=1.53t\nimages=8\nslices=8\n"))); // its list of pages is whole
+    expect_pages(fewer, {0, 1, 2, 3, 4, 5});
+    EXPECT_THAT(fewer.notes, Contains(HasSubstr("8 slices, the file has 6 pages")));
     expect_error([&] { read_volume(file(described_tiff(6, "ImageJ=1.53t\nimages=4\nchannels=2\nslices=2\n"))); },
                  {"2 channels", "6 pages"});
 }
@@ -287,7 +289,8 @@ TEST_F(TiffLayouts, TifffilesShape) {
     expect_error([&] { read(8, R"({"shape": [2, 4, 7, 6]})"); }, {"2 (unnamed) x 4 (unnamed)"});
     expect_error([&] { read(8, R"({"shape": [2, 4, 7, 6], "axes": "RZYX"})"); }, {"2 R x 4 Z"});
     expect_error([&] { read(8, R"({"shape": [8, 7, 6], "axes": "YXZ"})"); }, {"columns", "Z"});
-    expect_error([&] { read(6, R"({"shape": [8, 7, 6]})"); }, {"8 pages", "6"});
+    EXPECT_THAT(read(6, R"({"shape": [8, 7, 6]})").notes, Contains(HasSubstr("8 pages, the file has 6")));
+    expect_error([&] { read(6, R"({"shape": [2, 4, 7, 6], "axes": "CZYX"})"); }, {"8 pages", "6"});
     EXPECT_THAT(read(8, R"({"shape": [9, 9]})").notes, Contains(HasSubstr("not that of its pages")));
     EXPECT_THAT(read(8, R"({"shape": [4, 7, 6]})").notes, Contains(HasSubstr("first 4 of 8 pages")));
     EXPECT_EQ(read(8, R"({"shape": )").dims[2], 8); // no JSON: a text
@@ -341,6 +344,34 @@ TEST_F(TiffLayouts, MetaMorphStk) {
     expect_pages(v, {0, 1, 2, 3, 4});
     expect_spacing(v, {2.5e-4, 2.5e-4, 1.5e-3});
     EXPECT_THAT(v.notes, ElementsAre(HasSubstr("MetaMorph")));
+}
+
+TEST_F(TiffLayouts, OlympusFluoView) {
+    std::string header(284 + 10 * 100 + 100, '\0');
+    const auto dimension = [&](std::size_t i, const std::string& name, std::int32_t size, double step, const std::string& unit) {
+        const std::size_t at = 284 + 100 * i;
+        header.replace(at, name.size(), name);
+        header.replace(at + 16, 4, number(size));
+        header.replace(at + 28, 8, number(step));
+        header.replace(at + 36, unit.size(), unit);
+    };
+    dimension(0, "x", 6, 0.2, "um"), dimension(1, "y", 7, 0.3, "um"), dimension(2, "Z", 3, -1.5, "um"), dimension(3, "Ch", 2, 1, "");
+    const auto with = [&](std::size_t pages) {
+        TiffWriter w;
+        const auto all = ramp(42 * pages);
+        for (std::size_t k = 0; k < pages; ++k) {
+            auto tags = w.grey(6, 7, 16, 2);
+            if (k == 0) tags[34361] = w.bytes(header);
+            w.page(tags, {w.pixels(std::vector<std::int16_t>(all.begin() + 42 * k, all.begin() + 42 * (k + 1)))});
+        }
+        return file(w.file());
+    };
+    const Voxels v = read_volume(with(6), channel_and_frame(1, 0)); // z before channels, as the header lists them
+    expect_pages(v, {3, 4, 5});
+    expect_spacing(v, {2e-4, 3e-4, 1.5e-3});
+    expect_error([&] { read_volume(with(5)); }, {"FluoView", "5 pages"});
+    dimension(2, "Lambda", 3, 1, "nm");
+    expect_error([&] { read_volume(with(6)); }, {"3 lambda"});
 }
 
 TEST_F(TiffLayouts, ScanImage) {

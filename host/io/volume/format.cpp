@@ -71,6 +71,12 @@ bool has_nifti_header_beside(const std::string& path) {
     return !header.empty() && nifti_size(read_head_inside(header, 540));
 }
 
+/// Formats whose mark no voxels of a RAW file start with by chance.
+bool has_sure_mark(VolumeFormat f) {
+    return f == VolumeFormat::nrrd || f == VolumeFormat::vtk || f == VolumeFormat::png || f == VolumeFormat::numpy ||
+           f == VolumeFormat::hdf5;
+}
+
 bool reads_gzip(VolumeFormat f) {
     return f == VolumeFormat::nifti || f == VolumeFormat::numpy || f == VolumeFormat::mrc || f == VolumeFormat::mgh;
 }
@@ -121,9 +127,10 @@ VolumeFormat format_of_name(const std::string& file_name) {
 VolumeFormat format_of_file(const std::string& path, const VolumeReadOptions& options) {
     const std::string name = lower_case(std::filesystem::path(path).filename().string());
     const VolumeFormat by_name = format_of_name(name);
-    if (by_name == VolumeFormat::raw || options.dims) return VolumeFormat::raw;
-    if (has_nifti_header_beside(path)) return VolumeFormat::nifti;
+    if (options.dims) return VolumeFormat::raw;
     const std::string head = read_head(path, 1024);
+    if (by_name == VolumeFormat::raw) return has_sure_mark(format_of_head(head)) ? format_of_head(head) : VolumeFormat::raw;
+    if (has_nifti_header_beside(path)) return VolumeFormat::nifti;
     if (head.empty()) bad_file(path, "the file is empty");
     if (const VolumeFormat by_head = format_of_head(head); by_head != VolumeFormat::unknown) return by_head;
     if (starts_with(head, "\x1f\x8b"))

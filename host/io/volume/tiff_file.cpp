@@ -30,7 +30,12 @@ TiffFile::TiffFile(const std::string& path) : path_(path), raw_(nullptr, &std::f
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), &TiffFile::warn, this);
     // m: not mapped into memory, where the file would count a second time.
     handle_.reset(TIFFOpenExt(path.c_str(), "rm", options.get()));
-    if (!handle_) fail();
+    if (!handle_) {
+        const std::string head = read_head(path, 4);
+        const std::array marks{std::string("II*\0", 4), std::string("MM\0*", 4), std::string("II+\0", 4), std::string("MM\0+", 4)};
+        if (std::find(marks.begin(), marks.end(), head) == marks.end()) bad_file(path, "is no TIFF: it does not start as one");
+        fail();
+    }
     size_ = std::filesystem::file_size(path);
     raw_.reset(std::fopen(path.c_str(), "rb"));
     if (!raw_) bad_file(path, "cannot be opened");

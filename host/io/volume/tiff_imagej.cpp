@@ -39,18 +39,25 @@ private:
     std::string path_;
 };
 
+/// A unit as ImageJ writes it, where \u00B5 is an escaped micro sign.
+std::string unescaped(std::string unit) {
+    const std::string escape = "\\u00b5";
+    if (const auto at = lower_case(unit).find(escape); at != std::string::npos) unit.replace(at, escape.size(), "\xc2\xb5");
+    return unit;
+}
+
 /// The resolution tags count pixels a unit; the unit stands in the text, or ImageJ takes that of the tags.
 void set_scales(const TiffFile& file, const ImageJFields& fields, bool is_stack, TiffLayout& layout) {
     float x = 0, y = 0;
     if (TIFFGetField(file.get(), TIFFTAG_XRESOLUTION, &x) && x > 0) layout.scales[0].value = 1 / double{x};
     if (TIFFGetField(file.get(), TIFFTAG_YRESOLUTION, &y) && y > 0) layout.scales[1].value = 1 / double{y};
-    std::string unit = fields.text("unit");
+    std::string unit = unescaped(fields.text("unit"));
     std::uint16_t tag_unit = RESUNIT_NONE;
     if (unit.empty() && TIFFGetField(file.get(), TIFFTAG_RESOLUTIONUNIT, &tag_unit)) {
         if (tag_unit == RESUNIT_CENTIMETER) unit = "cm";
         if (tag_unit == RESUNIT_INCH && x > 1 && x != 72) unit = "inch"; // 72 and 1 are what programs write that know none
     }
-    const auto own_unit = [&](const char* name) { return fields.text(name).empty() ? unit : fields.text(name); };
+    const auto own_unit = [&](const char* name) { return fields.text(name).empty() ? unit : unescaped(fields.text(name)); };
     const auto spacing = fields.number("spacing");
     layout.scales[0].unit = unit, layout.scales[1].unit = own_unit("yunit"), layout.scales[2].unit = own_unit("zunit");
     layout.scales[0].source = layout.scales[1].source = "ImageJ's resolution";
@@ -120,7 +127,7 @@ std::optional<TiffLayout> imagej_layout(const TiffSource& source) {
     } else if (product == pages) {
         layout.add_planes("CZT");
         for (TiffPlane& p : layout.planes) p.page = main[p.page];
-    } else if (layout.channels == 1 && layout.times == 1 && product < pages) {
+    } else if (layout.channels == 1 && layout.times == 1 && pages > 1) {
         layout.notes.push_back(fmt::format("ImageJ says {} slices, the file has {} pages: each page is taken as a slice", product, pages));
         layout.slices = static_cast<int>(pages);
         layout.add_planes("CZT");

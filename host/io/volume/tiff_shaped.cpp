@@ -113,9 +113,14 @@ std::optional<TiffLayout> shaped_layout(const TiffSource& source) {
         for (TiffPlane& p : layout.planes) p.plain_at = at[p.page], p.page = 0;
         return layout;
     }
-    if (count > main.size())
-        bad_file(source.path, "its description says {} pages, the file has {}: it is truncated, or its pages were changed without it",
-                 count, main.size());
+    if (count > main.size()) {
+        if (axes->size() > 1 || main.size() == 1)
+            bad_file(source.path, "its description says {} pages, the file has {}: it is truncated, or its pages were changed without it",
+                     count, main.size());
+        layout = plain_layout(source);
+        layout.notes.push_back(fmt::format("its description says {} pages, the file has {}: each is taken as a slice", count, main.size()));
+        return layout;
+    }
     if (count < main.size())
         layout.notes.push_back(fmt::format("the file holds more than one series: the first {} of {} pages are read", count, main.size()));
     layout.add_planes(order);

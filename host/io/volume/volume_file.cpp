@@ -1,5 +1,6 @@
 #include "host/io/volume/volume_file.hpp"
 #include "host/io/byte_stream.hpp"
+#include "host/io/file_roles.hpp"
 #include "host/io/volume/dataset_path.hpp"
 #include "host/io/volume/folder.hpp"
 #include "host/io/volume/format.hpp"
@@ -141,6 +142,7 @@ Voxels read_any(const std::string& path, const VolumeReadOptions& options) {
     if (!place.inside.empty()) {
         if (format_of_file(place.file, options) != VolumeFormat::hdf5)
             bad_file(path, "{} is no HDF5 file: only those hold data sets that are named behind a colon", place.file);
+        will_read(place.file);
         return read_hdf5(path, options);
     }
     const fs::file_status status = fs::status(path, error);
@@ -150,6 +152,7 @@ Voxels read_any(const std::string& path, const VolumeReadOptions& options) {
     if (error) bad_file(path, "cannot be read: {}", error.message());
     if (fs::is_directory(status)) return read_folder(path, options);
     if (!fs::is_regular_file(status)) bad_file(path, "neither a file nor a folder: expected a volume");
+    will_read(path);
     return readers.at(format_of_file(path, options))(path, options);
 }
 
