@@ -140,8 +140,7 @@ std::vector<PlatformFacts> list_platforms() {
         quirks::pocl_hides_devices_without_writable_cache();
         return try_drivers();
     }();
-    if (problems.count(-1))
-        throw Error(ErrorKind::device, fmt::format("an OpenCL driver on this machine {}", problems.at(-1)));
+    if (problems.count(-1)) throw Error(ErrorKind::device, fmt::format("an OpenCL driver on this machine {}", problems.at(-1)));
     std::vector<cl::Platform> handles;
     try {
         cl::Platform::get(&handles);

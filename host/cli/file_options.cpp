@@ -2,15 +2,21 @@
 #include "host/io/file_roles.hpp"
 
 #include <map>
+#include <utility>
 
 namespace clvr {
 
 namespace {
 
-std::map<const CLI::Option*, FileOption>& declared() {
-    static std::map<const CLI::Option*, FileOption> all;
+/// By option and name: where an option lay before, another program's may lie now.
+using Declared = std::map<std::pair<const CLI::Option*, std::string>, FileOption>;
+
+Declared& declared() {
+    static Declared all;
     return all;
 }
+
+FileOption& declare(const CLI::Option* option) { return declared()[{option, option->get_name()}] = {}; }
 
 /// Calls visit(option) for those of the program and of the commands that were called.
 template <class Visit>
@@ -23,18 +29,18 @@ void each_given(const CLI::App& app, Visit&& visit) {
 } // namespace
 
 void reads_files(CLI::App& command, const std::vector<std::string>& options) {
-    for (const std::string& option : options) declared()[command.get_option(option)].read = true;
+    for (const std::string& option : options) declare(command.get_option(option)).read = true;
 }
 
 void writes_files(CLI::App& command, const std::string& option, WrittenFiles files) {
     if (!files) files = [](const std::string& value) { return std::vector{value}; };
-    FileOption& role = declared()[command.get_option(option)];
+    FileOption& role = declare(command.get_option(option));
     role.written = true;
     role.files = std::move(files);
 }
 
 FileOption file_option(const CLI::Option* option) {
-    const auto found = declared().find(option);
+    const auto found = declared().find({option, option->get_name()});
     return found == declared().end() ? FileOption() : found->second;
 }
 

@@ -42,14 +42,6 @@ Temporary temporary_in(const fs::path& folder, const std::string& wanted_path) {
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
-/// Where the bytes go: a link is followed, so that it stays a link.
-fs::path final_place(const std::string& path) {
-    std::error_code ignored;
-    if (!fs::is_symlink(fs::symlink_status(path, ignored))) return path;
-    const fs::path resolved = fs::weakly_canonical(path, ignored);
-    return resolved.empty() ? fs::path(path) : resolved;
-}
-
 void synchronise(const std::string& path, int flags) {
     const Descriptor file(::open(path.c_str(), flags | O_CLOEXEC));
     // EINVAL, EROFS, ENOTSUP: this kind of file has nothing to synchronise.
@@ -58,6 +50,18 @@ void synchronise(const std::string& path, int flags) {
 }
 
 } // namespace
+
+fs::path final_place(const fs::path& path) {
+    constexpr int most_links = 40; // as the system follows
+    fs::path place = path;
+    std::error_code failed;
+    for (int k = 0; k < most_links && fs::is_symlink(fs::symlink_status(place, failed)); ++k) {
+        const fs::path target = fs::read_symlink(place, failed);
+        if (failed) break;
+        place = target.is_absolute() ? target : place.parent_path() / target;
+    }
+    return place;
+}
 
 void check_writable(const std::string& path) {
     if (path.empty()) throw Error(ErrorKind::input, "an output file needs a name");

@@ -1,10 +1,14 @@
 // Files that are never seen half-written.
 #pragma once
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <string>
 
 namespace clvr {
+
+/// Where the bytes of a file of this name go: symbolic links are followed, so that they stay links; also those to what is not there yet.
+std::filesystem::path final_place(const std::filesystem::path& path);
 
 /// Throws Error{input} with the reason unless a regular file can be made or replaced at `path`. Leaves nothing behind.
 void check_writable(const std::string& path);

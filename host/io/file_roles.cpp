@@ -1,4 +1,5 @@
 #include "host/io/file_roles.hpp"
+#include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
 
 #include <filesystem>
@@ -27,11 +28,10 @@ std::optional<Identity> identity_of(const struct stat& s) {
 std::optional<Identity> identity_of(const std::string& path) {
     struct stat s {};
     if (::stat(path.c_str(), &s) == 0) return identity_of(s);
-    std::error_code failed;
-    fs::path place = fs::is_symlink(fs::symlink_status(path, failed)) ? fs::weakly_canonical(path, failed) : fs::path(path);
-    if (failed || place.empty()) place = path;
+    const fs::path place = final_place(path);
     const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
     if (::stat(folder.c_str(), &s) == 0) return Identity{s.st_dev, s.st_ino, place.filename().string()};
+    std::error_code failed;
     return Identity{0, 0, fs::absolute(place, failed).lexically_normal().string()};
 }
 

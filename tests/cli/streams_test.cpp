@@ -1,4 +1,5 @@
 // Standard output that cannot take what is printed: an exit code and one line, from every command that needs no device.
+#include "host/io/picture/frame_file.hpp"
 #include "tests/cli/home.hpp"
 
 #include <gmock/gmock.h>
@@ -34,14 +35,13 @@ protected:
     }
 
 private:
-    /// A picture of one pixel, made once: a PNG from its bytes.
     std::string picture() const {
-        static const unsigned char png[] = {
-            0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0,    0,    0,    13, 'I', 'H', 'D', 'R', 0,   0,   0,    1,    0,    0,    0,
-            1,    8,   2,   0,   0,    0,    0x90, 0x77, 0x53, 0xde, 0,    0,  0,   12,  'I', 'D', 'A', 'T', 0x08, 0xd7, 0x63, 0xf8, 0xcf,
-            0xc0, 0,   0,   3,   1,    1,    0,    0x18, 0xdd, 0x8d, 0xb0, 0,  0,   0,   0,   'I', 'E', 'N', 'D',  0xae, 0x42, 0x60, 0x82};
-        home.write("dot.png", {reinterpret_cast<const char*>(png), sizeof png});
-        return (home.path() / "dot.png").string();
+        Frame frame;
+        frame.width = frame.height = 16;
+        for (const char* c : {"R", "G", "B"}) frame.channel(c);
+        const std::string path = (home.path() / "black.png").string();
+        write_png(frame, {"none", 0}, path);
+        return path;
     }
 };
 
