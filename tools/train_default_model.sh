@@ -2,7 +2,8 @@
 # Makes the models inside clvr again: volumes that clvr computes, views of each in three kinds of light, then the training.
 # Usage: train_default_model.sh DIR [CLVR [default|small]]
 #   default   the model that reads all channels of clvr's frames, of 24 views a volume
-#   small     those for other renderers' pictures, color and color-albedo-normal, of 7 views a volume with references of half the samples
+#   small     those for other renderers' pictures, color and color-albedo-normal, of 7 views a volume with references of half the samples;
+#             the ones in datasets/models had fewer epochs and volumes: datasets/results/small_models.md
 # Goes on where it was interrupted. On two cores: about 2 hours for the pairs of default, 20 minutes for its training; on a large GPU minutes.
 set -euo pipefail
 folder=$1

@@ -146,14 +146,20 @@ std::string layers_of(const std::vector<std::string>& channels) {
     return layers;
 }
 
-/// The model for the frame: `named`, else the first inside clvr that reads only what the frame has.
-Model model_for(const Options& o, const std::optional<Model>& named, Frame& frame) {
+/// The model for the frame: `named`, else the first inside clvr that reads only what the frame has. Adds what it reads and can be made, and
+/// names that in `made`.
+Model model_for(const Options& o, const std::optional<Model>& named, Frame& frame, std::vector<std::string>& made) {
+    const auto keep = [&](const MadeChannels& channels) {
+        if (!channels.said.empty()) spdlog::info("{}: {}", o.input, channels.said);
+        made.insert(made.end(), channels.names.begin(), channels.names.end());
+    };
     const auto choose = [&] {
         std::vector<std::pair<std::string, Model>> candidates;
         for (const auto& name : embedded_model_names()) candidates.emplace_back(name, read_model(name));
         return about(o.input, [&] { return choose_model(candidates, frame); });
     };
     if (!named) {
+        keep(add_normal(frame));
         const ModelChoice choice = choose();
         if (choice.missing == std::vector<std::string>{"noise"})
             spdlog::info("{}: denoised by the model {}; --spp N, the samples per pixel, lets it take the one that reads more", o.input,
@@ -165,7 +171,7 @@ Model model_for(const Options& o, const std::optional<Model>& named, Frame& fram
             spdlog::info("{}: denoised by the model {}", o.input, choice.name);
         return choice.model;
     }
-    if (const std::string said = add_opacity(frame, *named); !said.empty()) spdlog::info("{}: {}", o.input, said);
+    keep(add_opacity(frame, *named));
     try {
         ChannelPlan(*named, false).check(frame);
     } catch (const Error& e) {
@@ -186,7 +192,8 @@ void denoise(const Options& o) {
     const Tonemap tonemap{o.tonemap.value_or(is_display_light(picture_format(o.input)) ? "none" : "filmic"), o.exposure};
     const ToneCurve known(tonemap);
     Frame frame = input_frame(o);
-    const Model model = model_for(o, named, frame);
+    std::vector<std::string> made;
+    const Model model = model_for(o, named, frame, made);
     std::vector<Device> devices = open_devices(o.device);
     std::size_t repaired = 0;
     frame = about(o.input, [&] {
@@ -197,6 +204,7 @@ void denoise(const Options& o) {
             return clean;
         });
     });
+    for (const auto& name : made) frame.channels.erase(name);
     if (repaired > 0) spdlog::warn("{}: {} values are not finite; taken as 0", o.input, repaired);
     std::vector<Shown> shown;
     if (!o.show.empty()) shown = shown_of(frame, o.outputs.front());

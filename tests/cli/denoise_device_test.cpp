@@ -60,7 +60,10 @@ TEST_F(Denoising, ChoosesTheModelByWhatThePictureHas) {
     std::vector<std::string> named = colours;
     named.insert(named.end(), {"DiffCol.R", "DiffCol.G", "DiffCol.B"});
     write_exr(noise(named), path("mapped.exr"));
-    denoise("mapped.exr", {"--map", "albedo=DiffCol"});
+    EXPECT_THAT(denoise("mapped.exr", {"--map", "albedo=DiffCol"}).err,
+                AllOf(HasSubstr("normal is taken as 0"), HasSubstr("the model color-albedo-normal;")));
+    EXPECT_TRUE(read_exr(path("d.exr")).has("albedo.G"));
+    EXPECT_FALSE(read_exr(path("d.exr")).has("normal.X")) << "what was made for the model alone is not written";
     named.insert(named.end(), {"N.X", "N.Y", "N.Z"});
     write_exr(noise(named), path("guided.exr"));
     EXPECT_THAT(denoise("guided.exr").err, AllOf(HasSubstr("DiffCol.* is taken as albedo.*"), HasSubstr("the model color-albedo-normal;")));

@@ -54,16 +54,29 @@ TEST(ModelChoiceTest, OpacityIsAlphaElseOne) {
     Model model = default_settings();
     model.channels = {"R", "G", "B"};
     Frame frame = frame_with({"R", "G", "B", "A"});
-    EXPECT_THAT(add_opacity(frame, model), HasSubstr("taken from A"));
+    EXPECT_THAT(add_opacity(frame, model).said, HasSubstr("taken from A"));
     EXPECT_THAT(frame.at("opacity.A"), ElementsAre(0.25f, 0.5f));
-    EXPECT_EQ(add_opacity(frame, model), "") << "it is there now";
+    EXPECT_EQ(add_opacity(frame, model).said, "") << "it is there now";
     frame = frame_with({"R", "G", "B"});
-    EXPECT_THAT(add_opacity(frame, model), HasSubstr("no A"));
+    EXPECT_THAT(add_opacity(frame, model).said, HasSubstr("no A"));
     EXPECT_THAT(frame.at("opacity.A"), ElementsAre(1, 1));
     frame = frame_with({"R", "G", "B"});
     model.opacity_weight = false;
-    EXPECT_EQ(add_opacity(frame, model), "");
+    EXPECT_EQ(add_opacity(frame, model).said, "");
     EXPECT_FALSE(frame.has("opacity.A"));
+}
+
+TEST(ModelChoiceTest, NormalIsNoneBesideAnAlbedo) {
+    Frame frame = frame_with({"R", "G", "B", "albedo.R", "albedo.G", "albedo.B"});
+    const MadeChannels made = add_normal(frame);
+    EXPECT_THAT(made.names, ElementsAre("normal.X", "normal.Y", "normal.Z"));
+    EXPECT_THAT(made.said, HasSubstr("taken as 0"));
+    for (const auto& name : made.names) EXPECT_THAT(frame.at(name), ElementsAre(0, 0));
+    EXPECT_TRUE(add_normal(frame).names.empty()) << "they are there now";
+    frame = frame_with({"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X"});
+    EXPECT_TRUE(add_normal(frame).names.empty()) << "a part of them is a mistake to see";
+    frame = frame_with({"R", "G", "B"});
+    EXPECT_TRUE(add_normal(frame).names.empty());
 }
 
 TEST(ModelChoiceTest, NamesAllThatIsMissing) {
