@@ -13,7 +13,7 @@ build=(build-essential cmake ninja-build
     libclblast-dev                                                    # matrix products in training
     libcurl4-openssl-dev                                              # downloads
     libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev) # command line, JSON, text, checksums
-test=(libgtest-dev libgmock-dev clang-14 clang-format-14 gcovr oclgrind mesa-opencl-icd)
+test=(libgtest-dev libgmock-dev clang-14 libclang-rt-14-dev clang-format-14 gcovr oclgrind mesa-opencl-icd)
 
 case ${1:-build} in
     build) wanted=("${build[@]}") ;;

@@ -21,7 +21,7 @@ float noise_level(const Frame& frame) {
 } // namespace
 
 ChannelPlan::ChannelPlan(const Model& model, bool with_target)
-    : exposure_(model.exposure), weighted_(model.opacity_weight), with_target_(with_target), albedo_floor_(model.albedo_floor) {
+    : exposure_(model.exposure), weighted_(model.opacity_weight), albedo_floor_(model.albedo_floor) {
     const auto has = [&](const char* name) {
         return std::find(model.channels.begin(), model.channels.end(), name) != model.channels.end();
     };

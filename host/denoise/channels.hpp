@@ -38,7 +38,7 @@ public:
 private:
     std::vector<std::string> planes_;
     std::vector<std::array<std::int32_t, 2>> channels_;
-    bool exposure_, demodulate_, weighted_, with_target_;
+    bool exposure_, demodulate_, weighted_;
     float albedo_floor_;
 
     int plane(const std::string& name) const; // its number, -1: not among them
