@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
             add_words(sample.bytes, words);
         }
         std::ofstream dictionary(folder.string() + ".dict");
+        dictionary << "\"\\x0A--8<--\\x0A\"\n"; // file_mark
         for (const std::string& word : words) dictionary << '"' << word << "\"\n";
     }
     return 0;
