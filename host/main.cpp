@@ -1,8 +1,10 @@
-// The `clvr` program: registers the subcommands, catches Error once.
-#include "host/cli/commands.hpp"
+// The `clvr` program: parses the words, which runs a command, and catches Error once.
+#include "host/cli/first_word.hpp"
+#include "host/cli/nearest.hpp"
+#include "host/cli/program.hpp"
 #include "runtime/error.hpp"
-#include "runtime/source.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -26,41 +28,37 @@ void log_to_stderr() {
     spdlog::set_default_logger(std::move(logger));
 }
 
+/// One line for what CLI11 refuses: an unknown option with the one that may be meant, else CLI11's own words.
+std::string refusal(const CLI::App& app, const CLI::ParseError& error) {
+    const CLI::App* command = &app;
+    while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+    const std::string name = clvr::full_name(*command);
+    for (const std::string& word : app.remaining(true)) {
+        if (word.size() < 2 || word[0] != '-') continue;
+        std::vector<std::string> names;
+        for (const CLI::App* of : {command, &app})
+            for (const auto& option : clvr::options_of(*of))
+                if (!option.positional) names.insert(names.end(), option.names.begin(), option.names.end());
+        const std::string unknown = word.substr(0, word.find('=')), near = clvr::nearest_name(unknown, names);
+        const std::string lacks = command == &app ? "there is" : name.substr(name.find(' ') + 1) + " has";
+        return fmt::format("{} no option {}{} (see {} --help)", lacks, unknown, near.empty() ? "" : ": did you mean " + near + "?", name);
+    }
+    std::string what = error.what();
+    std::replace(what.begin(), what.end(), '\n', ' ');
+    return fmt::format("{} (see {} --help)", what, name);
+}
+
 int run(int argc, char** argv) {
-    CLI::App app("clvr renders scientific and medical volumes by path tracing on any OpenCL device.");
-    app.name("clvr");
-    app.fallthrough();            // global options are understood after the subcommand, too
-    app.require_subcommand(0, 1); // none is told apart below from an unknown one
-    app.set_version_flag("--version", CLVR_VERSION);
-    app.set_config("--config", "", "Read options from an INI or TOML file, those of a subcommand in its [section]")->type_name("FILE");
-    app.allow_config_extras(CLI::config_extras_mode::error);
-    app.add_option_function<std::string>("--kernel-dir", clvr::set_kernel_dir,
-                                         "Folder whose OpenCL files replace the built-in ones of the same path")
-        ->type_name("DIR");
-    app.add_flag_callback(
-        "-v,--verbose", [] { spdlog::set_level(spdlog::level::debug); }, "Say more about what is done");
-    app.add_flag_callback(
-        "-q,--quiet", [] { spdlog::set_level(spdlog::level::err); }, "Say nothing but errors");
-    clvr::add_devices_command(app);
-    clvr::add_info_command(app);
-    clvr::add_render_command(app);
-    clvr::add_denoise_command(app);
-    clvr::add_pairs_command(app);
-    clvr::add_compare_command(app);
-    clvr::add_train_command(app);
-    clvr::add_eval_command(app);
-    clvr::add_dataset_command(app);
-    clvr::add_experiment_command(app);
-    clvr::add_ablation_command(app);
-    clvr::add_selftest_command(app);
+    CLI::App app;
+    clvr::add_program(app);
     try {
-        app.parse(argc, argv);
-        if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
+        std::vector<std::string> words = clvr::with_command(app, {argv + 1, argv + argc});
+        std::reverse(words.begin(), words.end()); // as CLI11 takes them
+        app.parse(std::move(words));
+        if (app.get_subcommands().empty()) std::fputs(app.help().c_str(), stdout);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // help and version
-        std::string what = error.what();
-        std::replace(what.begin(), what.end(), '\n', ' ');
-        return report(what + " (see clvr --help)", clvr::ErrorKind::usage);
+        return report(refusal(app, error), clvr::ErrorKind::usage);
     }
     return 0;
 }

@@ -1,4 +1,5 @@
 #include "runtime/remembered.hpp"
+#include "runtime/json_text.hpp"
 
 #include "runtime/error.hpp"
 #include "runtime/folders.hpp"
@@ -64,7 +65,7 @@ void save_remembered(const std::vector<RememberedDevice>& devices, const Remembe
     if (!path) throw Error(ErrorKind::input, "there is no folder to remember the device in; set HOME or XDG_CONFIG_HOME");
     nlohmann::json json{{"devices", entries_of(devices)}};
     for (const auto& [task, chosen] : by_task) json["tasks"][task] = entries_of(chosen);
-    if (!replace_file(*path, json.dump(2) + "\n"))
+    if (!replace_file(*path, json_text(json)))
         throw Error(ErrorKind::input, "cannot be written; check the folder's permissions", path->string());
 }
 

@@ -1,4 +1,5 @@
 #include "runtime/tuning.hpp"
+#include "runtime/json_text.hpp"
 
 #include "runtime/embedded.hpp"
 #include "runtime/error.hpp"
@@ -117,7 +118,7 @@ void save_tuning(const DeviceFacts& device, const Tuning& tuning) {
                               {"driver_version", device.driver_version},
                               {"tunables", tuning.values},
                               {"evidence", tuning.evidence}};
-    if (!replace_file(*path, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n"))
+    if (!replace_file(*path, json_text(json)))
         throw Error(ErrorKind::input, "cannot be written; check the folder's permissions", path->string());
 }
 

@@ -10,5 +10,11 @@ inside() {
     unshare --mount bash -c 'for d in proc sys dev; do mount --bind /$d "$0/$d" || exit 1; done; exec chroot "$0" /usr/bin/env -i PATH=/usr/bin:/bin:/usr/sbin:/sbin HOME=/root "$@"' "$@"
 }
 
+# install_inside FOLDER PACKAGE...: by apt-get, with no more than they need.
+install_inside() {
+    inside "$1" sh -c 'apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "$@"' sh "${@:2}" >"$1.log" 2>&1 ||
+        { tail "$1.log"; return 1; }
+}
+
 # is_png FILE
 is_png() { [ "$(head -c 4 "$1" | tail -c 3)" == PNG ]; }

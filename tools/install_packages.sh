@@ -7,13 +7,13 @@ set -euo pipefail
 
 build=(build-essential cmake ninja-build
     ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd           # OpenCL, and a device that every machine has
-    libinsighttoolkit5-dev libgdcm-dev libtiff-dev libhdf5-dev libpugixml-dev # volume files
+    libgdcm-dev libtiff-dev libhdf5-dev libpugixml-dev                # volume files
     zlib1g-dev libbz2-dev liblz4-dev                                  # what they are packed with
-    libopenexr-dev libpng-dev libturbojpeg0-dev libstb-dev            # pictures
+    libopenexr-dev libpng-dev libturbojpeg0-dev                       # pictures
     libclblast-dev                                                    # matrix products in training
     libcurl4-openssl-dev                                              # downloads
     libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev) # command line, JSON, text, checksums
-test=(libgtest-dev libgmock-dev clang-14 libclang-rt-14-dev clang-format-14 gcovr oclgrind mesa-opencl-icd)
+test=(libgtest-dev libgmock-dev 'clang-14|clang' 'libclang-rt-14-dev|libclang-rt-dev' 'clang-format-14|' gcovr 'oclgrind|' mesa-opencl-icd) # A|B: A, else B; A|: A where there is one
 
 case ${1:-build} in
     build) wanted=("${build[@]}") ;;
@@ -22,8 +22,15 @@ case ${1:-build} in
 esac
 
 command -v dpkg-query >/dev/null || { echo "$0: no dpkg here; install by hand what corresponds to: ${wanted[*]}" >&2; exit 1; }
-installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' | sed -n 's/^installed //p')
-mapfile -t missing < <(comm -23 <(printf '%s\n' "${wanted[@]}" | sort) <(sort -u <<<"$installed"))
+installed=" $(dpkg-query -W -f '${db:Status-Status} ${Package} ' | sed 's/\binstalled //g') "
+missing=()
+for package in "${wanted[@]}"; do
+    IFS='|' read -ra choices <<<"$package"
+    for choice in "${choices[@]}"; do
+        [[ $installed != *" $choice "* ]] || continue 2
+    done
+    missing+=("$package")
+done
 [ "${#missing[@]}" -gt 0 ] || exit 0
 
 root=()
@@ -31,9 +38,20 @@ if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null || { echo "$0: run as root: apt-get install ${missing[*]}" >&2; exit 1; }
     root=(sudo)
 fi
-echo "installing ${#missing[@]} packages: ${missing[*]}"
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 quietly() { "$@" >"$log" 2>&1 || { cat "$log" >&2; return 1; }; }
 quietly "${root[@]}" apt-get update -q
-quietly "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${missing[@]}"
+chosen=()
+for package in "${missing[@]}"; do
+    IFS='|' read -ra choices <<<"$package"
+    for choice in "${choices[@]}"; do
+        apt-cache show "$choice" >/dev/null 2>&1 || continue
+        chosen+=("$choice")
+        continue 2
+    done
+    [[ $package == *'|' ]] || { echo "$0: this system has no package ${package//|/ or }" >&2; exit 1; }
+done
+[ "${#chosen[@]}" -gt 0 ] || exit 0
+echo "installing ${#chosen[@]} packages: ${chosen[*]}"
+quietly "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends "${chosen[@]}"

@@ -12,6 +12,19 @@ install(
   LIBRARY DESTINATION lib/clvr)
 install(FILES LICENSE README.md DESTINATION share/doc/clvr)
 
+# Manual pages and completions, as the programs write them from their own description of their options.
+set(share ${CMAKE_BINARY_DIR}/share)
+add_custom_command(
+  OUTPUT ${share}/written
+  COMMAND ${CMAKE_COMMAND} -E rm -rf ${share}
+  COMMAND clvr --share-files ${share}
+  COMMAND clvr-bench --share-files ${share}
+  COMMAND ${CMAKE_COMMAND} -E touch ${share}/written
+  DEPENDS clvr clvr-bench
+  VERBATIM)
+add_custom_target(clvr_share ALL DEPENDS ${share}/written)
+install(DIRECTORY ${share}/ DESTINATION share PATTERN written EXCLUDE)
+
 # The licence of each carried library, as its Debian package states it.
 install(CODE [[
   set(prefix "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}")
@@ -29,9 +42,18 @@ install(CODE [[
   endforeach()
 ]])
 
-set(CPACK_GENERATOR TGZ)
+set(CPACK_GENERATOR TGZ DEB)
 set(CPACK_PACKAGE_VENDOR clvr)
+set(CPACK_PACKAGE_CONTACT "clvr's authors")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "volume renderer for scientific and medical data on OpenCL")
+set(CPACK_PACKAGE_DESCRIPTION "Turns CT, MRI, microscopy and simulation volumes into pictures by path tracing on any\nOpenCL device, and removes their noise with a small neural network.")
 set(CPACK_PACKAGE_FILE_NAME clvr-${PROJECT_VERSION}-linux-${CMAKE_SYSTEM_PROCESSOR})
 set(CPACK_STRIP_FILES ON)
 set(CPACK_VERBATIM_VARIABLES ON)
+# The .deb carries its libraries as the tarball does, so that one package serves Debian 12 and every later one, whose libraries have other versions. It
+# wants a device to compute on: PoCL, unless another OpenCL driver is there.
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libc6 (>= 2.36), libstdc++6 (>= 12), libgcc-s1 (>= 12), ca-certificates, pocl-opencl-icd | opencl-icd")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg")
 include(CPack)

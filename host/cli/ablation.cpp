@@ -67,19 +67,27 @@ void add_ablation_command(CLI::App& app) {
         "Train the network with fewer or other input channels and switches, and measure each; goes on where it was interrupted");
     auto o = std::make_shared<Options>();
     AblationSettings& s = o->settings;
-    c->add_option("DIR", s.train, "Folders of training pairs");
-    c->add_option("--test", s.test, "Folder of test pairs (may be given again)")->type_name("DIR");
-    c->add_option("-o,--output", o->folder, "Folder to fill")->type_name("DIR");
-    c->add_option("--spp", s.spp, "Measure at the noisy frames of these samples per pixel [1,4]")->type_name("LIST")->delimiter(',');
+    c->add_option("DIR", s.train, "Folders of training pairs")->type_name("DIR");
+    c->add_option("-o,--output", o->folder, "Folder to fill")->type_name("DIR")->group("Output");
+    c->add_flag("--json", o->json, "Print JSON")->group("Output");
+    c->add_option("--test", s.test, "Folder of test pairs (may be given again)")->type_name("DIR")->group("Measuring");
+    c->add_option("--spp", s.spp, "Measure at the noisy frames of these samples per pixel [1,4]")
+        ->type_name("N,...")
+        ->delimiter(',')
+        ->group("Measuring");
     std::string names;
     for (const AblationRow& row : ablation_rows()) names += (names.empty() ? "" : ", ") + row.name;
-    c->add_option("--rows", s.rows, "Only some of: " + names + " [all but the last]")->type_name("LIST")->delimiter(',');
+    c->add_option("--rows", s.rows, "Only some of: " + names + " [all but the last]")
+        ->type_name("ROW,...")
+        ->delimiter(',')
+        ->group("Measuring");
     c->add_option("--steps", s.training.steps, "Steps of each training [1500]")->group("Training");
     c->add_option("--batch", s.training.step.batch, "Patches a step [8]")->group("Training");
     c->add_option("--patch", s.training.step.patch, "Width and height of a patch [128]")->group("Training");
     c->add_option("--lr", s.training.learning_rate, "Learning rate of Adam, falling along a cosine [0.001]")->group("Training");
     c->add_option("--seed", s.training.seed, "Of initialisation and patches [0]")->group("Training");
-    c->add_flag("--json", o->json, "Print JSON");
+    c->footer("Examples:\n"
+              "  clvr ablation train1 train2 --test test1 --test test2 -o ablation\n");
     add_device_options(*c, o->device, "train");
     c->callback([o, c] { ablation(*o, command_text(*c)); });
 }

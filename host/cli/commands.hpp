@@ -1,4 +1,4 @@
-// The subcommands of `clvr`, one file each; main.cpp registers them all and catches Error once.
+// The subcommands of `clvr`, one file each; program.cpp registers them all, main.cpp catches Error once.
 #pragma once
 #include <CLI/CLI.hpp>
 

@@ -9,6 +9,7 @@
 #include "host/io/volume/volume_file.hpp"
 #include "host/volume/phantom.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -45,7 +46,7 @@ void list(const Options& o) {
     if (o.json) {
         ordered_json all = ordered_json::array();
         for (const Dataset& d : datasets()) all.push_back(to_json(d));
-        fmt::print("{}\n", ordered_json{{"datasets", all}, {"computed", phantom_names()}}.dump(1));
+        fmt::print("{}", json_text(ordered_json{{"datasets", all}, {"computed", phantom_names()}}));
         return;
     }
     for (const Dataset& d : datasets())
@@ -57,7 +58,7 @@ void list(const Options& o) {
 void info(const Options& o) {
     const Dataset& d = dataset_named(o.name);
     if (o.json) {
-        fmt::print("{}\n", to_json(d).dump(1));
+        fmt::print("{}", json_text(to_json(d)));
         return;
     }
     fmt::print("{}: {}\n", d.name, d.title);
@@ -120,26 +121,36 @@ void add_dataset_command(CLI::App& app) {
     auto o = std::make_shared<Options>();
 
     CLI::App* l = c->add_subcommand("list", "What there is");
-    l->add_flag("--json", o->json, "Write JSON");
+    l->add_flag("--json", o->json, "Print JSON")->group("Output");
+    l->footer("Examples:\n  clvr dataset list\n");
     l->callback([o] { list(*o); });
 
     CLI::App* i = c->add_subcommand("info", "Size, source, licence, citation of a published volume");
-    i->add_option("NAME", o->name, "As listed")->required();
-    i->add_flag("--json", o->json, "Write JSON");
+    i->add_option("NAME", o->name, "As listed")->type_name("DATASET")->required();
+    i->add_flag("--json", o->json, "Print JSON")->group("Output");
+    i->footer("Examples:\n  clvr dataset info bonsai\n");
     i->callback([o] { info(*o); });
 
     CLI::App* f = c->add_subcommand("fetch", "Download a published volume; goes on where it was interrupted, checks size and checksum");
-    f->add_option("NAME", o->name, "As listed")->required();
-    f->add_option("--dir", o->folder, "Folder [.]");
+    f->add_option("NAME", o->name, "As listed")->type_name("DATASET")->required();
+    f->add_option("--dir", o->folder, "Folder to write into [.]")->type_name("DIR")->group("Output");
+    f->footer("Examples:\n  clvr dataset fetch bonsai --dir volumes\n");
     f->callback([o] { fetch(*o); });
 
     CLI::App* m = c->add_subcommand("make", "Compute a volume: the same bits on every device");
-    m->add_option("NAME", o->name, fmt::format("{}", fmt::join(phantom_names(), ", ")))->required();
-    m->add_option("-o,--output", o->output, "File to write (.nii.gz or .nii)")->type_name("FILE");
-    m->add_option("--dims", o->dims, "Voxels [those of the published volume that it is like, else its own]")->type_name("XxYxZ");
-    m->add_option("--type", o->type, "u8, i8, u16, i16 or f32 [as --dims]");
-    m->add_option("--seed", o->seed, "Of growth, texture and noise [0]");
+    m->add_option("NAME", o->name, fmt::format("{}", fmt::join(phantom_names(), ", ")))->type_name("COMPUTED")->required();
+    m->add_option("-o,--output", o->output, "File to write (.nii.gz or .nii)")->type_name("FILE")->group("Output");
+    m->add_option("--dims", o->dims, "Voxels [those of the published volume that it is like, else its own]")
+        ->type_name("WxHxD")
+        ->group("Volume");
+    m->add_option("--type", o->type, "Type of the voxels [as --dims]")->type_name("u8|i8|u16|i16|f32")->group("Volume");
+    m->add_option("--seed", o->seed, "Of growth, texture and noise [0]")->group("Volume");
+    c->footer("Examples:\n"
+              "  clvr dataset list\n"
+              "  clvr dataset fetch bonsai --dir volumes\n"
+              "  clvr dataset make vessels -o vessels.nii.gz --dims 256x256x256\n");
     add_device_options(*m, o->device, "render");
+    m->footer("Examples:\n  clvr dataset make vessels -o vessels.nii.gz --dims 256x256x256\n");
     m->callback([o] { make(*o); });
 }
 

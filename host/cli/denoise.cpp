@@ -1,7 +1,11 @@
-// clvr denoise: a noisy frame to a clean one.
+// clvr denoise: a noisy picture to a clean one.
 #include "host/cli/commands.hpp"
 #include "host/cli/device_options.hpp"
+#include "host/cli/picture_outputs.hpp"
+#include "host/denoise/channels.hpp"
 #include "host/denoise/denoiser.hpp"
+#include "host/denoise/model_choice.hpp"
+#include "host/frame/channel_mapping.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/render/scene.hpp"
@@ -12,45 +16,20 @@
 #include <spdlog/spdlog.h>
 
 #include <filesystem>
+#include <optional>
 
 namespace clvr {
 
 namespace {
 
 struct Options {
-    std::string input, model = "default";
+    std::string input, model, albedo, normal; // model empty: by what the frame has
     std::vector<std::string> outputs, show, map;
     int spp = 0; ///< 0: as the frame says
-    Tonemap tonemap;
+    std::optional<std::string> tonemap;
+    double exposure = 0;
     DeviceOptions device;
 };
-
-/// Renames channels of other renderers' files: "albedo=DiffCol" takes DiffCol.R as albedo.R and so on, "depth.Z=Depth.V" one channel.
-/// "beauty" is R G B A.
-void map_channels(Frame& frame, const std::string& mapping, const std::string& file) {
-    const std::size_t sign = mapping.find('=');
-    if (sign == mapping.npos || sign == 0 || sign + 1 == mapping.size())
-        throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected CLVR'S=THEIRS, for instance albedo=DiffCol", mapping), "--map");
-    const std::string to = mapping.substr(0, sign), from = mapping.substr(sign + 1);
-    if (frame.has(from)) {
-        frame.channels[to] = frame.at(from);
-        return;
-    }
-    const std::string axes = "XYZ", colours = "RGBA";
-    int mapped = 0;
-    for (const char suffix : std::string("RGBAXYZV")) {
-        if (!frame.has(from + "." + suffix)) continue;
-        char named = suffix;
-        if (to == "normal" && colours.find(suffix) < axes.size()) named = axes[colours.find(suffix)];
-        frame.channels[to == "beauty" ? std::string(1, named) : to + "." + named] = frame.at(from + "." + suffix);
-        ++mapped;
-    }
-    if (mapped > 0) return;
-    std::vector<std::string> has;
-    for (const auto& [name, values] : frame.channels) has.push_back(name);
-    throw Error(ErrorKind::input, fmt::format("has no channel {} or {}.* (--map {}); it has {}", from, from, mapping, fmt::join(has, " ")),
-                file);
-}
 
 DenoiserView view_of(const std::vector<std::string>& names) {
     DenoiserView view;
@@ -69,70 +48,182 @@ DenoiserView view_of(const std::vector<std::string>& names) {
 
 /// Writes each shown channel as a picture beside `output`: out.guide.1.png, out.level1.png.
 void write_shown(const Frame& frame, const std::string& output, const Tonemap& tonemap) {
-    const auto path = [&](const std::string& name) {
+    const auto write = [&](const Frame& picture, const Tonemap& as, const std::string& name) {
         const std::filesystem::path p(output);
-        return (p.parent_path() / (p.stem().string() + "." + name + ".png")).string();
+        const std::string ending = is_exr_path(output) ? ".png" : p.extension().string();
+        write_frame(picture, as, (p.parent_path() / (p.stem().string() + "." + name + ending)).string());
     };
-    Frame picture;
-    picture.width = frame.width, picture.height = frame.height;
+    Frame picture = frame.blank();
     for (const auto& [name, values] : frame.channels) {
         if (name.rfind("guide.", 0) == 0 || name.rfind("weight.", 0) == 0) {
             for (const char* c : {"R", "G", "B"}) picture.channels[c] = values;
-            write_png(picture, {"none", 0}, path(name));
+            write(picture, {"none", 0}, name);
         } else if (name.rfind("level", 0) == 0 && name.size() > 2 && name.substr(name.size() - 2) == ".R") {
             const std::string level = name.substr(0, name.size() - 2);
             for (const char* c : {"R", "G", "B"}) picture.channels[c] = frame.at(level + "." + c);
-            write_png(picture, tonemap, path(level));
+            write(picture, tonemap, level);
         }
     }
 }
 
+/// Calls `act`; an Error about the frame names its file.
+template <class Act>
+auto about(const std::string& file, Act act) {
+    try {
+        return act();
+    } catch (const Error& e) {
+        throw e.kind() == ErrorKind::input && e.where().empty() ? Error(e.kind(), e.what(), file) : e;
+    }
+}
+
+Frame read_noted(const std::string& path) {
+    Frame frame = read_picture(path);
+    for (const auto& note : frame.notes) spdlog::warn("{}: {}", path, note);
+    return frame;
+}
+
+/// Adds the colours of a picture of its own as the frame's `pass`.
+void add_pass(Frame& frame, const std::string& path, const std::string& pass) {
+    if (path.empty()) return;
+    Frame picture = read_noted(path);
+    map_known_channels(picture);
+    about(path, [&] {
+        if (picture.window() != frame.window())
+            throw Error(ErrorKind::input, fmt::format("has {} x {} pixels; expected {} x {}, as the frame", picture.width, picture.height,
+                                                      frame.width, frame.height));
+        const std::string to = pass == "normal" ? "XYZ" : "RGB";
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::string own = pass + "." + to[c], colour(1, "RGB"[c]);
+            const std::vector<float>* const values = picture.has(own) ? picture.find(own) : picture.find(colour);
+            if (!values) throw Error(ErrorKind::input, fmt::format("lacks channel {}", colour));
+            frame.channels[own] = *values;
+        }
+    });
+}
+
+/// The input with clvr's names for its channels.
+Frame input_frame(const Options& o) {
+    Frame frame = read_noted(o.input);
+    if (o.spp > 0) frame.attributes["clvr.spp"] = std::to_string(o.spp);
+    about(o.input, [&] {
+        for (const auto& mapping : o.map) map_channels(frame, mapping);
+    });
+    add_pass(frame, o.albedo, "albedo");
+    add_pass(frame, o.normal, "normal");
+    for (const auto& said : map_known_channels(frame)) spdlog::info("{}: {}", o.input, said);
+    std::vector<std::string> has;
+    for (const auto& [name, values] : frame.channels) has.push_back(name);
+    for (const char* c : {"R", "G", "B"})
+        if (!frame.has(c))
+            throw Error(ErrorKind::input,
+                        fmt::format("lacks channel {}: name its beauty as --map beauty=LAYER; it has {}", c, fmt::join(has, " ")), o.input);
+    return frame;
+}
+
+/// "albedo normal depth" of their channels.
+std::string layers_of(const std::vector<std::string>& channels) {
+    std::string layers, last;
+    for (const auto& channel : channels) {
+        const std::string layer = channel.substr(0, channel.find('.'));
+        if (layer != last) layers += (layers.empty() ? "" : " ") + layer;
+        last = layer;
+    }
+    return layers;
+}
+
+/// The model for the frame: `named`, else the first inside clvr that reads only what the frame has.
+Model model_for(const Options& o, const std::optional<Model>& named, Frame& frame) {
+    const auto choose = [&] {
+        std::vector<std::pair<std::string, Model>> candidates;
+        for (const auto& name : embedded_model_names()) candidates.emplace_back(name, read_model(name));
+        return about(o.input, [&] { return choose_model(candidates, frame); });
+    };
+    if (!named) {
+        const ModelChoice choice = choose();
+        if (choice.missing == std::vector<std::string>{"noise"})
+            spdlog::info("{}: denoised by the model {}; --spp N, the samples per pixel, lets it take the one that reads more", o.input,
+                         choice.name);
+        else if (!choice.missing.empty())
+            spdlog::info("{}: denoised by the model {}; for the one that reads the most it lacks {}", o.input, choice.name,
+                         layers_of(choice.missing));
+        else
+            spdlog::info("{}: denoised by the model {}", o.input, choice.name);
+        return choice.model;
+    }
+    if (const std::string said = add_opacity(frame, *named); !said.empty()) spdlog::info("{}: {}", o.input, said);
+    try {
+        ChannelPlan(*named, false).check(frame);
+    } catch (const Error& e) {
+        throw Error(e.kind(), fmt::format("{}; --model {} reads only what it has", e.what(), choose().name), o.input);
+    }
+    return *named;
+}
+
 void denoise(const Options& o) {
-    if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr denoise");
+    if (o.outputs.empty())
+        throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .jpg, or .exr for all channels)", "clvr denoise");
     if (o.spp < 0 || o.spp > largest_spp)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.spp, largest_spp), "--spp");
     const DenoiserView view = view_of(o.show);
-    for (const auto& path : o.outputs) check_frame_path(path);
-    const Model model = read_model(o.model);
-    Frame frame = read_exr(o.input);
-    if (o.spp > 0) frame.attributes["clvr.spp"] = std::to_string(o.spp);
-    for (const auto& mapping : o.map) map_channels(frame, mapping, o.input);
+    PictureOutputs pictures(o.outputs);
+    std::optional<Model> named;
+    if (!o.model.empty()) named = read_model(o.model);
+    const Tonemap tonemap{o.tonemap.value_or(is_display_light(picture_format(o.input)) ? "none" : "filmic"), o.exposure};
+    const ToneCurve known(tonemap);
+    Frame frame = input_frame(o);
+    const Model model = model_for(o, named, frame);
     std::vector<Device> devices = open_devices(o.device);
     std::size_t repaired = 0;
-    try {
-        frame = on_first(devices, [&](Device& device) {
+    frame = about(o.input, [&] {
+        return on_first(devices, [&](Device& device) {
             Denoiser denoiser(device, model);
             Frame clean = denoiser.denoise(frame, view);
             repaired = denoiser.repaired();
             return clean;
         });
-    } catch (const Error& e) {
-        throw e.kind() == ErrorKind::input ? Error(e.kind(), e.what(), o.input) : e;
-    }
+    });
     if (repaired > 0) spdlog::warn("{}: {} values are not finite; taken as 0", o.input, repaired);
-    for (const auto& path : o.outputs) write_frame(frame, o.tonemap, path);
-    if (!o.show.empty()) write_shown(frame, o.outputs.front(), o.tonemap);
+    pictures.write(frame, tonemap, o.outputs);
+    if (!o.show.empty()) write_shown(frame, o.outputs.front(), tonemap);
     print_profiles(o.device, {devices.front()});
 }
 
 } // namespace
 
 void add_denoise_command(CLI::App& app) {
-    CLI::App* c = app.add_subcommand("denoise", "Denoise a rendered frame (EXR) with a trained network");
+    CLI::App* c = app.add_subcommand("denoise", "Denoise a picture with a trained network");
     auto o = std::make_shared<Options>();
-    c->add_option("IN", o->input, "Noisy frame (.exr) with the channels that the model names")->required();
-    c->add_option("-o,--output", o->outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
-    c->add_option("--model", o->model, "Trained network (.safetensors) [the one inside clvr]")->type_name("FILE");
-    c->add_option("--spp", o->spp, "Samples per pixel of a frame that does not say it (another renderer's)");
-    c->add_option("--map", o->map,
-                  "Take another renderer's channels: albedo=DiffCol, depth.Z=Depth.V, beauty=Combined (may be given again)")
+    c->add_option("IN", o->input, "Noisy picture: .exr of any renderer, .hdr, .pfm, .png or .jpg")->type_name("FILE")->required();
+    c->add_option("-o,--output", o->outputs, "Picture to write: .png, .jpg, or .exr with all channels (may be given twice)")
+        ->type_name("FILE")
+        ->group("Output");
+    c->add_option("--model", o->model,
+                  "Trained network: a .safetensors file, or one inside clvr: default, color-albedo-normal, color [by what the picture has]")
+        ->type_name("FILE|NAME")
+        ->group("Network");
+    c->add_option("--spp", o->spp, "Samples per pixel of a frame that does not say it (another renderer's)")->group("Network");
+    c->add_option(
+         "--map", o->map,
+         "Take another renderer's channels: albedo=DiffCol, normal=N, beauty=Combined (may be given again) [usual names are known]")
         ->type_name("CLVR'S=THEIRS")
-        ->delimiter(',');
-    c->add_option("--show", o->show, "Also write what the network made, beside the output: guides, weights, levels")
-        ->type_name("WHAT")
-        ->delimiter(',');
-    c->add_option("--exposure", o->tonemap.exposure, "PNG: exposure in stops [0]");
-    c->add_option("--tonemap", o->tonemap.curve, "PNG: filmic, aces, reinhard or none [filmic]");
+        ->delimiter(',')
+        ->group("Network");
+    c->add_option("--albedo", o->albedo, "Albedo in a picture of its own, as large")->type_name("FILE")->group("Network");
+    c->add_option("--normal", o->normal, "Normals in a picture of its own: X Y Z as its R G B, -1 to 1")
+        ->type_name("FILE")
+        ->group("Network");
+    c->add_option("--show", o->show, "Also write what the network made, beside the output (may be given again)")
+        ->type_name("guides|weights|levels")
+        ->delimiter(',')
+        ->group("Output");
+    c->add_option("--exposure", o->exposure, "PNG and JPEG: exposure in stops [0]")->group("Output");
+    c->add_option("--tonemap", o->tonemap, "PNG and JPEG: tone curve [filmic; none where IN is .png or .jpg]")
+        ->type_name("filmic|aces|reinhard|none")
+        ->group("Output");
+    c->footer("Examples:\n"
+              "  clvr denoise noisy.exr -o clean.exr\n"
+              "  clvr denoise noisy.exr -o clean.png --model mine.safetensors\n"
+              "  clvr denoise other.exr -o clean.exr --map albedo=DiffCol\n");
     add_device_options(*c, o->device, "denoise");
     c->callback([o] { denoise(*o); });
 }

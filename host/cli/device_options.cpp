@@ -10,7 +10,8 @@ namespace clvr {
 
 void add_device_options(CLI::App& c, DeviceOptions& o, const std::string& task) {
     o.task = task;
-    c.add_option("--device", o.selector, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +, all")
+    c.add_option("--device", o.selector,
+                 "An index, cpu, gpu, part of a name, cpu/2, several joined by +, or all [what `clvr devices` says]")
         ->type_name("SEL")
         ->group("Device");
     c.add_option("--memory", o.memory, "Use at most so much device memory")->type_name("SIZE")->group("Device");

@@ -3,6 +3,7 @@
 
 #include "runtime/error.hpp"
 #include "runtime/icd.hpp"
+#include "runtime/json_text.hpp"
 #include "runtime/select.hpp"
 #include "runtime/size.hpp"
 #include "runtime/trust.hpp"
@@ -163,8 +164,7 @@ void print_json(const Report& report) {
     nlohmann::json selection;
     if (report.selection) selection = to_json(*report.selection);
     for (const auto& [task, other] : report.otherwise) selection["tasks"][task] = to_json(other);
-    fmt::print("{}\n", nlohmann::json{{"platforms", platforms}, {"selection", selection}}.dump(2, ' ', false,
-                                                                                               nlohmann::json::error_handler_t::replace));
+    fmt::print("{}", json_text(nlohmann::json{{"platforms", platforms}, {"selection", selection}}));
 }
 
 struct Options {
@@ -190,9 +190,13 @@ void add_devices_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("devices", "What OpenCL offers here, and which device clvr will use and why");
     command
         ->add_option("--device", options->selector,
-                     "Show what this selector chooses: an index, cpu, gpu, part of a name, cpu/2, several joined by +, all")
-        ->type_name("SEL");
-    command->add_flag("--json", options->json, "Write JSON");
+                     "Show what this selector chooses: an index, cpu, gpu, part of a name, cpu/2, several joined by +, or all")
+        ->type_name("SEL")
+        ->group("Device");
+    command->add_flag("--json", options->json, "Print JSON")->group("Output");
+    command->footer("Examples:\n"
+                    "  clvr devices\n"
+                    "  clvr devices --device gpu+cpu\n");
     command->callback([options] { devices_command(*options); });
 }
 

@@ -9,6 +9,7 @@
 #include "host/io/picture/frame_file.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -98,7 +99,7 @@ void eval(Options o) {
         write_atomically(o.report, html.data(), html.size());
     }
     if (o.json)
-        fmt::print("{}\n", json_of(e, o, baselines).dump(1));
+        fmt::print("{}", json_text(json_of(e, o, baselines)));
     else
         print_table(e);
     print_profiles(o.device, {device});
@@ -109,15 +110,23 @@ void eval(Options o) {
 void add_eval_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("eval", "Measure models and classical denoisers on a folder of test pairs");
     auto o = std::make_shared<Options>();
-    c->add_option("DIR", o->folder, "Folder that `clvr pairs --split test` made")->required();
-    c->add_option("--model", o->models, "Trained network (.safetensors; may be given again)")->type_name("FILE");
-    c->add_option("--frame", o->frame, "Which noisy frame of each view, from 0 on, where there are several [0]");
+    c->add_option("DIR", o->folder, "Folder that `clvr pairs --split test` made")->type_name("DIR")->required();
+    c->add_option("--report", o->report, "Also write one self-contained page with pictures, crops and curves")
+        ->type_name("FILE.html")
+        ->group("Output");
+    c->add_flag("--json", o->json, "Print JSON with the measures of every view")->group("Output");
+    c->add_option("--exposure", o->tonemap.exposure, "Report: exposure in stops [0]")->group("Output");
+    c->add_option("--tonemap", o->tonemap.curve, "Report: tone curve [filmic]")->type_name("filmic|aces|reinhard|none")->group("Output");
+    c->add_option("--model", o->models, "Trained network (.safetensors; may be given again) [the one inside clvr]")
+        ->type_name("FILE")
+        ->group("Measuring");
+    c->add_option("--frame", o->frame, "Which noisy frame of each view, from 0 on, where there are several [0]")->group("Measuring");
     c->add_option("--tune", o->tune, "Choose the classical denoisers' settings on this folder of training pairs [defaults]")
-        ->type_name("DIR");
-    c->add_option("--report", o->report, "Also write one self-contained page with pictures, crops and curves")->type_name("FILE.html");
-    c->add_option("--exposure", o->tonemap.exposure, "Report: exposure in stops [0]");
-    c->add_option("--tonemap", o->tonemap.curve, "Report: filmic, aces, reinhard or none [filmic]");
-    c->add_flag("--json", o->json, "Write JSON with the measures of every view");
+        ->type_name("DIR")
+        ->group("Measuring");
+    c->footer("Examples:\n"
+              "  clvr eval test --model mine.safetensors --report report.html\n"
+              "  clvr eval test --model a.safetensors --model b.safetensors --tune train --json\n");
     add_device_options(*c, o->device, "denoise");
     c->callback([o] { eval(*o); });
 }

@@ -11,6 +11,7 @@
 #include "host/experiment/experiment_estimate.hpp"
 #include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 #include "runtime/size.hpp"
 
 #include <algorithm>
@@ -136,21 +137,21 @@ void print_plan(const ExperimentSettings& s, const std::string& folder, const Ex
     if (json) {
         ordered_json stages = ordered_json::array();
         for (const StageEstimate& stage : e.stages) stages.push_back(to_json(stage));
-        fmt::print("{}\n", ordered_json{{"scene", s.name},
-                                        {"scale", s.scale},
-                                        {"folder", folder},
-                                        {"device", device},
-                                        {"dims", e.dims},
-                                        {"type", voxel_type_name(e.type)},
-                                        {"volume_bytes", e.volume_bytes},
-                                        {"paths", total.paths},
-                                        {"training_steps", total.steps},
-                                        {"disk_bytes", total.disk_bytes},
-                                        {"device_bytes", e.device_bytes},
-                                        {"seconds", total.seconds},
-                                        {"probe_seconds", e.probe_seconds},
-                                        {"stages", stages}}
-                               .dump(1));
+        const ordered_json plan{{"scene", s.name},
+                                {"scale", s.scale},
+                                {"folder", folder},
+                                {"device", device},
+                                {"dims", e.dims},
+                                {"type", voxel_type_name(e.type)},
+                                {"volume_bytes", e.volume_bytes},
+                                {"paths", total.paths},
+                                {"training_steps", total.steps},
+                                {"disk_bytes", total.disk_bytes},
+                                {"device_bytes", e.device_bytes},
+                                {"seconds", total.seconds},
+                                {"probe_seconds", e.probe_seconds},
+                                {"stages", stages}};
+        fmt::print("{}", json_text(plan));
         return;
     }
     fmt::print("{}, scale {}, into {}\n", s.name, s.scale, folder);
@@ -205,32 +206,46 @@ void add_experiment_command(CLI::App& app) {
     c->add_option("SCENE", o->scene,
                   fmt::format("head, beetle, snake (the published scenes' computed stand-ins), {}, a published volume, or a volume file",
                               fmt::join(phantom_names(), ", ")))
+        ->type_name("COMPUTED|DATASET|FILE")
         ->required();
-    c->add_option("-o,--output", o->folder, "Folder to fill [SCENE-SCALE]")->type_name("DIR");
+    c->add_option("-o,--output", o->folder, "Folder to fill [SCENE-SCALE]")->type_name("DIR")->group("Output");
     c->add_option("--scale", o->scale,
-                  "paper (the published protocol at full size), quick (a quarter of an hour on two cores) or tiny [quick]");
-    c->add_flag("--dry-run", o->dry_run, "Only print what it would take: paths, bytes, time by a short probe");
-    c->add_flag("--json", o->json, "Print JSON");
+                  "paper: the published protocol at full size; quick: a quarter of an hour on two cores; tiny: two minutes [quick]")
+        ->type_name("paper|quick|tiny")
+        ->group("Output");
+    c->add_flag("--dry-run", o->dry_run, "Only print what it would take: paths, bytes, time by a short probe")->group("Output");
+    c->add_flag("--json", o->json, "Print JSON")->group("Output");
     c->add_option("--volume", o->volume, "This file as the scene's volume")->type_name("FILE")->group("Volume");
     c->add_flag("--fetch", o->fetch, "Download the published volume into the folder")->group("Volume");
-    c->add_option("--dims", o->dims, "Voxels of a computed volume [those of the published one: all, half of them each way, or 96 at most]")
+    c->add_option("--dims", o->dims,
+                  "Voxels of a computed volume [paper, quick, tiny: those of the published one, half of them each way, 96 at most]")
         ->type_name("WxHxD")
         ->group("Volume");
     c->add_option("--tf", o->picture.transfer, "Transfer function: a preset's name, or a JSON file [the scene's, else from the histogram]")
-        ->type_name("NAME|FILE")
+        ->type_name("PRESET|FILE")
         ->group("Volume");
-    c->add_option("--size", o->picture.size, "Size of the views [512x512, 192x192, 96x96]")->type_name("WxH")->group("Views");
-    c->add_option("--views", o->views, "Training views [100, 24, 6]")->group("Views");
-    c->add_option("--test-views", o->test_views, "Test views [50, 8, 3]")->group("Views");
-    c->add_option("--reference-spp", o->reference_spp, "Samples per pixel of the training references [1024, 256, 64]")->group("Views");
-    c->add_option("--test-reference-spp", o->test_reference_spp, "Samples per pixel of the test references [4096, 1024, 64]")
+    c->add_option("--size", o->picture.size, "Size of the views [paper 512x512, quick 192x192, tiny 96x96]")
+        ->type_name("WxH")
+        ->group("Views");
+    c->add_option("--views", o->views, "Training views [paper 100, quick 24, tiny 6]")->group("Views");
+    c->add_option("--test-views", o->test_views, "Test views [paper 50, quick 8, tiny 3]")->group("Views");
+    c->add_option("--reference-spp", o->reference_spp, "Samples per pixel of the training references [paper 1024, quick 256, tiny 64]")
+        ->group("Views");
+    c->add_option("--test-reference-spp", o->test_reference_spp,
+                  "Samples per pixel of the test references [paper 4096, quick 1024, tiny 64]")
         ->group("Views");
     c->add_option("--seed", o->picture.seed, "Of views, noise, initialisation and patches [0]")->group("Views");
-    c->add_option("--epochs", o->epochs, "Epochs of 50 patches a view [200]")->group("Training");
-    c->add_option("--steps", o->steps, "Steps, in place of epochs [-, 3000, 600]")->group("Training");
-    c->add_option("--batch", o->batch, "Patches a step [128, 8, 4]")->group("Training");
-    c->add_option("--patch", o->patch, "Width and height of a patch [256, 128, 64]")->group("Training");
-    c->add_option("--lr", o->learning_rate, "Learning rate of Adam [0.0001 constant; 0.001 along a cosine]")->group("Training");
+    c->add_option("--epochs", o->epochs, "Epochs of 50 patches a view [paper 200]")->group("Training");
+    c->add_option("--steps", o->steps, "Steps, in place of epochs [quick 3000, tiny 600]")->group("Training");
+    c->add_option("--batch", o->batch, "Patches a step [paper 128, quick 8, tiny 4]")->group("Training");
+    c->add_option("--patch", o->patch, "Width and height of a patch [paper 256, quick 128, tiny 64]")->group("Training");
+    c->add_option("--lr", o->learning_rate, "Learning rate of Adam [paper 0.0001, constant; else 0.001, falling along a cosine]")
+        ->group("Training");
+    c->footer("Examples:\n"
+              "  clvr experiment snake --scale tiny\n"
+              "  clvr experiment beetle --scale paper --dry-run\n"
+              "  clvr experiment stag_beetle --fetch --scale paper\n"
+              "  clvr experiment scan.nii.gz -o mine\n");
     add_device_options(*c, o->picture.devices, "train");
     c->callback([o, c] { experiment(*o, command_text(*c)); });
 }

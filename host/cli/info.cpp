@@ -4,6 +4,7 @@
 #include "host/cli/text_chart.hpp"
 #include "host/cli/volume_options.hpp"
 #include "host/render/device_volume.hpp"
+#include "runtime/json_text.hpp"
 #include "runtime/select.hpp"
 #include "runtime/size.hpp"
 
@@ -205,7 +206,7 @@ void print_json(const Report& r) {
                            {"notes", v.notes},
                            {"device_rule", r.rule},
                            {"memory_plan", plans}};
-    fmt::print("{}\n", j.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}", json_text(j));
 }
 
 } // namespace
@@ -213,12 +214,19 @@ void print_json(const Report& r) {
 void add_info_command(CLI::App& app) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("info", "What a volume holds: geometry, type, range, histogram, bricks, memory plan");
-    command->add_option("VOLUME", options->input, "Volume file or folder, or demo:head")->required();
+    command->add_option("VOLUME", options->input, "Volume file or folder, or demo:head and the like")
+        ->type_name("FILE|DIR|DEMO")
+        ->required();
+    command->add_flag("--json", options->json, "Print JSON")->group("Output");
     command
         ->add_option("--device", options->selector,
-                     "Device of the memory plan: index, cpu, gpu, part of a name, cpu/2, several joined by +")
-        ->type_name("SEL");
-    command->add_flag("--json", options->json, "Write JSON");
+                     "Device of the memory plan: an index, cpu, gpu, part of a name, cpu/2, several joined by +")
+        ->type_name("SEL")
+        ->group("Device");
+    command->footer("Examples:\n"
+                    "  clvr info scan.nii.gz\n"
+                    "  clvr info scans/ --json\n"
+                    "  clvr info fuel.raw --dims 64x64x64 --type uint8\n");
     add_volume_options(*command, options->volume);
     command->callback([options] {
         const Report report = make_report(*options);

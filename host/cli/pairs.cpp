@@ -10,6 +10,7 @@
 #include "runtime/error.hpp"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -77,7 +78,9 @@ void pairs(const Options& o) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     std::vector<Device> devices = open_devices(o.scene.devices);
     const Scene& first = plan.scenes.front();
-    const EnvironmentTables environment = read_environment(first);
+    std::vector<std::string> notes;
+    const EnvironmentTables environment = read_environment(first, &notes);
+    for (const auto& note : notes) spdlog::debug("{}: {}", first.light.image, note);
     const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(first.volume, first.reading, device); }));
     settle(plan, volume);
     begin_pairs_folder(o.folder, plan);
@@ -101,20 +104,26 @@ void pairs(const Options& o) {
 void add_pairs_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("pairs", "Render views around a volume as noisy frames and references, for training and testing");
     auto o = std::make_shared<Options>();
-    c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is gone on with")->type_name("DIR");
+    c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is gone on with")->type_name("DIR")->group("Output");
     c->add_option("--views", o->views, "Number of views [100]")->group("Pairs");
     c->add_option("--reference-spp", o->reference_spp, "Samples per pixel of the references; 0: none [1024]")->group("Pairs");
     c->add_option("--noisy-frames", o->noisy_frames, "Independent noisy frames of each view [1]")->group("Pairs");
     c->add_option("--noisy-spp", o->noisy_spp, "Samples per pixel of several noisy frames a view, as 1,2,4,8 [one of --spp]")
-        ->type_name("LIST")
+        ->type_name("N,...")
         ->delimiter(',')
         ->group("Pairs");
-    c->add_option("--split", o->split, "train or test: other views, other noise [train]")->group("Pairs");
+    c->add_option("--split", o->split, "Training and test pairs have other views and other noise [train]")
+        ->type_name("train|test")
+        ->group("Pairs");
     c->add_option("--zoom-range", o->zoom_range, "Zooms of the views, uniform [1,1]")->type_name("LOW,HIGH")->group("Pairs");
-    c->add_option("--vary-tf", o->variations, "Transfer functions (presets or files) that the views take in turn")
-        ->type_name("NAME|FILE")
+    c->add_option("--vary-tf", o->variations, "Transfer functions that the views take in turn (may be given again)")
+        ->type_name("PRESET|FILE")
         ->group("Pairs");
     add_scene_options(*c, o->scene);
+    c->footer("Examples:\n"
+              "  clvr pairs scan.nii.gz -o train --views 24 --size 256x256 --reference-spp 256\n"
+              "  clvr pairs scan.nii.gz -o test --views 8 --split test --noisy-spp 1,2,4,8\n"
+              "  clvr pairs train/pairs.json -o copy   # the same pairs again\n");
     c->callback([o] { pairs(*o); });
 }
 

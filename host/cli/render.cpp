@@ -1,7 +1,9 @@
 // clvr render: a volume or a scene to pictures.
 #include "host/cli/commands.hpp"
+#include "host/cli/first_word.hpp"
 #include "host/cli/interrupt.hpp"
 #include "host/cli/open_volume.hpp"
+#include "host/cli/picture_outputs.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/denoise/denoiser.hpp"
@@ -75,7 +77,8 @@ private:
 
 /// Renders one view and writes it to all outputs. Returns the samples reached.
 int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene, const RenderOptions& o,
-                const std::atomic<bool>& interrupted, const std::vector<std::string>& outputs, const std::string& label) {
+                const std::atomic<bool>& interrupted, PictureOutputs& pictures, const std::vector<std::string>& outputs,
+                const std::string& label) {
     Frame frame;
     {
         ProgressBar bar(label, false);
@@ -95,15 +98,26 @@ int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene,
     made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
     if (denoiser) frame = denoiser->denoise(frame, renderer.devices());
     add_provenance(frame, made, renderer.devices());
-    for (const auto& path : outputs) write_frame(frame, {made.tonemap, made.exposure}, path);
+    pictures.write(frame, {made.tonemap, made.exposure}, outputs);
     return made.spp;
 }
 
-void render(const RenderOptions& o) {
+/// The picture beside the volume, where there is none yet. Throws Error{usage}.
+std::string new_picture_beside(const RenderOptions& o) {
+    const std::string picture = picture_beside(o.input);
+    std::error_code failed;
+    if (std::filesystem::exists(o.turntable > 0 ? numbered(picture, 0) : picture, failed))
+        throw Error(ErrorKind::usage, "exists; add -o " + picture + " to replace it, or -o with another name", picture);
+    return picture;
+}
+
+void render(RenderOptions o) {
     if (o.list_transfer) return print_presets();
     if (o.input.empty())
         throw Error(ErrorKind::usage, "no volume given: name a file or folder, or demo:head for the built-in one", "clvr render");
-    if (o.outputs.empty()) throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .exr for all channels)", "clvr render");
+    if (o.outputs.empty() && o.beside) o.outputs.push_back(new_picture_beside(o));
+    if (o.outputs.empty())
+        throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .jpg, or .exr for all channels)", "clvr render");
     if (o.turntable < 0 || o.turntable > 10000)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 10000", o.turntable), "--turntable");
     if (!(o.seconds >= 0)) throw Error(ErrorKind::usage, fmt::format("is {}; expected a positive number of seconds", o.seconds), "--time");
@@ -111,12 +125,14 @@ void render(const RenderOptions& o) {
     if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
     std::optional<Model> model;
     if (o.denoise) model = read_model(o.model);
-    for (const auto& path : o.outputs) check_frame_path(path);
+    PictureOutputs pictures(o.outputs, " (or over --background)");
     if (!o.save_scene.empty()) check_writable(o.save_scene);
     const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr_path);
 
     const std::atomic<bool>& interrupted = catch_interrupts();
-    const EnvironmentTables environment = read_environment(scene);
+    std::vector<std::string> notes;
+    const EnvironmentTables environment = read_environment(scene, &notes);
+    for (const auto& note : notes) spdlog::debug("{}: {}", scene.light.image, note);
     std::vector<Device> devices = open_devices(o.devices);
     const PreparedVolume volume(on_first(devices, [&](Device& device) { return open_volume(scene.volume, scene.reading, device); }));
     if (any_exr || !o.save_scene.empty() || !scene.volume_sha256.empty()) {
@@ -150,7 +166,7 @@ void render(const RenderOptions& o) {
             scene.view = view;
             renderer.aim(scene.camera, scene.view);
         }
-        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, interrupted, outputs,
+        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, interrupted, pictures, outputs,
                               o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
     }
     if (!o.save_scene.empty()) {
@@ -170,6 +186,28 @@ void add_render_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "Render a volume to a picture");
     auto options = std::make_shared<RenderOptions>();
     add_render_options(*command, *options);
+    command->footer("Transfer functions:\n"
+                    "  A JSON file of points over the volume's values; between them, colour and\n"
+                    "  opacity change linearly, outside they stay as at the ends:\n"
+                    "\n"
+                    "  {\"domain\": \"physical\",\n"
+                    "   \"points\": [{\"value\": 150, \"color\": [0.9, 0.5, 0.4], \"opacity\": 0},\n"
+                    "              {\"value\": 300, \"color\": [0.9, 0.8, 0.7], \"opacity\": 0.4}]}\n"
+                    "\n"
+                    "  Values are the file's own, such as Hounsfield units; with \"domain\":\n"
+                    "  \"normalized\", 0 to 1 of the volume's range. Colours are red, green, blue from\n"
+                    "  0 to 1 in sRGB, as colour pickers show them; \"color_space\": \"linear\" beside\n"
+                    "  \"domain\" says that they are linear (albedo 0.5 linear is 0.735 in sRGB).\n"
+                    "World space:\n"
+                    "  --eye, --target and --clip-plane are in LPS millimetres: x grows to the\n"
+                    "  patient's left, y to the back, z to the head. `clvr info` shows where the\n"
+                    "  volume lies.\n"
+                    "Examples:\n"
+                    "  clvr render scan.nii.gz -o scan.png --denoise --spp 4\n"
+                    "  clvr render scans/ -o knee.png --tf ct-bone --azimuth 90 --zoom 1.5\n"
+                    "  clvr render head.mha -o head.exr -o head.png --tf mine.json --time 30\n"
+                    "  clvr render demo:head -o turn.png --turntable 72 --background \"#202020\"\n"
+                    "  clvr render scan.nii.gz -o in.png --eye 0,-400,40 --target 0,0,40\n");
     command->callback([options] { render(*options); });
 }
 

@@ -113,66 +113,83 @@ TransferFunction transfer_of(const std::string& name) {
 } // namespace
 
 void add_scene_options(CLI::App& c, RenderOptions& o) {
-    c.add_option("VOLUME", o.input, "Volume file or folder, scene JSON, or demo:head");
-    c.add_option("--spp", o.spp, "Samples per pixel [64]")->group("Picture");
-    c.add_option("--size", o.size, "Picture size [640x640]")->type_name("WxH")->group("Picture");
-    c.add_option("--seed", o.seed, "Seed of the random numbers [0]")->group("Picture");
-    c.add_option("--mode", o.mode, "path (path tracing), dvr (emission-absorption) or mip (maximum) [path]")->group("Picture");
-    c.add_option("--background", o.background, "transparent, environment or #rrggbb [transparent]")->group("Picture");
-    c.add_option("--feature-samples", o.feature_samples, "Rays per pixel of the noise-free features, 1 or 4 [4]")->group("Picture");
+    c.add_option("VOLUME", o.input, "Volume file or folder, scene JSON, or demo:head and the like")->type_name("FILE|DIR|DEMO");
+    c.add_option("--size", o.size, "Picture size [640x640]")->type_name("WxH")->group("Output");
+    c.add_option("--spp", o.spp, "Samples per pixel: more take longer and give less noise [64]")->group("Output");
+    c.add_option("--background", o.background, "What is seen past the volume [transparent]")
+        ->type_name("transparent|environment|#rrggbb")
+        ->group("Output");
 
-    c.add_option("--tf", o.transfer,
-                 "Transfer function: a preset's name, a JSON file (clvr's or ParaView's), or auto: from the histogram [auto]")
-        ->type_name("NAME|FILE")
-        ->group("Volume");
-    c.add_option("--extinction", o.extinction, "Extinction at opacity 1 [1/mm] [512 / diagonal]")->group("Volume");
+    c.add_option(
+         "--tf", o.transfer,
+         "Transfer function, what each value looks like: a preset, a JSON file (clvr's, see below, or ParaView's), or auto: from the "
+         "histogram [auto]")
+        ->type_name("auto|PRESET|FILE")
+        ->group("Look");
+    c.add_option("--mode", o.mode, "Path tracing, emission and absorption, or maximum intensity [path]")
+        ->type_name("path|dvr|mip")
+        ->group("Look");
+    c.add_option("--shading", o.shading, "Like fog (phase), like surfaces (gradient), or by the local gradient (auto) [auto]")
+        ->type_name("auto|phase|gradient")
+        ->group("Look");
+    c.add_option("--extinction", o.extinction, "How dense opacity 1 is, in 1/mm [512 / diagonal]")->group("Look");
     c.add_option("--clip-box", o.clip_box, "Keep only this part, as shares 0..1 of the volume along its axes")
         ->type_name("I0,J0,K0,I1,J1,K1")
-        ->group("Volume");
+        ->group("Look");
     c.add_option("--clip-plane", o.clip_plane,
-                 "Cut away what lies beyond the plane: normal in world space, offset in mm from the world's origin")
+                 "Cut away what lies beyond the plane: its normal, and its offset from the origin in mm, both in LPS")
         ->type_name("NX,NY,NZ,OFFSET")
-        ->group("Volume");
+        ->group("Look");
 
-    c.add_option("--shading", o.shading, "auto, phase or gradient [auto]")->group("Light");
-    c.add_option("--phase-g", o.phase_g, "Henyey-Greenstein asymmetry, -1 < g < 1 [0]")->group("Light");
-    c.add_option("--bounces", o.bounces, "Greatest number of scattering events, 0: unlimited [8]")->group("Light");
-    c.add_option("--environment", o.environment, "sky, a constant radiance, or an image (.hdr, .exr) [sky]")
+    c.add_option("--azimuth", o.azimuth, "Degrees around the vertical axis; 0 faces a patient, 90 sees the left side [30]")
+        ->group("Camera");
+    c.add_option("--elevation", o.elevation, "Degrees above the horizon [12]")->group("Camera");
+    c.add_option("--zoom", o.zoom, "Above 1 enlarges [1]")->group("Camera");
+    c.add_option("--fov", o.fov, "Vertical field of view in degrees [30]")->group("Camera");
+    c.add_flag("--orthographic", o.orthographic, "Parallel projection")->group("Camera");
+    c.add_option("--eye", o.eye, "Position of the camera in LPS millimetres (to the patient's left, back, head), with --target")
+        ->type_name("X,Y,Z")
+        ->group("Camera");
+    c.add_option("--target", o.target, "What the camera looks at, in LPS millimetres")->type_name("X,Y,Z")->group("Camera");
+
+    c.add_option("--environment", o.environment, "The sky, a constant radiance such as 1, or an image (.hdr, .exr, .pfm) [sky]")
         ->type_name("sky|L|FILE")
         ->group("Light");
-    c.add_option("--environment-rotation", o.environment_rotation, "Turns the image around the vertical axis [degrees]")->group("Light");
+    c.add_option("--environment-rotation", o.environment_rotation, "Degrees by which the image is turned around the vertical axis [0]")
+        ->group("Light");
     c.add_option("--key", o.key, "Strength of the soft key light [1 under the sky, else 0]")->group("Light");
-    c.add_option("--key-azimuth", o.key_azimuth, "Direction of the key light, relative to the camera's [-40 degrees]")->group("Light");
-    c.add_option("--key-elevation", o.key_elevation, "Height of the key light [45 degrees]")->group("Light");
+    c.add_option("--key-azimuth", o.key_azimuth, "Direction of the key light in degrees, relative to the camera's [-40]")->group("Light");
+    c.add_option("--key-elevation", o.key_elevation, "Height of the key light in degrees [45]")->group("Light");
     c.add_option("--headlight", o.headlight, "Irradiance of a light from the camera [0]")->group("Light");
+    c.add_option("--phase-g", o.phase_g, "Henyey-Greenstein asymmetry, above -1 and below 1 [0]")->group("Light");
+    c.add_option("--bounces", o.bounces, "Greatest number of scattering events; 0: unlimited [8]")->group("Light");
 
-    c.add_option("--azimuth", o.azimuth, "Camera: degrees around the vertical axis; 0 faces a patient, 90 sees the left side [30]")
-        ->group("Camera");
-    c.add_option("--elevation", o.elevation, "Camera: degrees above the horizon [12]")->group("Camera");
-    c.add_option("--zoom", o.zoom, "Camera: above 1 enlarges [1]")->group("Camera");
-    c.add_option("--fov", o.fov, "Camera: vertical field of view [30 degrees]")->group("Camera");
-    c.add_option("--eye", o.eye, "Camera: position in world space [mm], with --target")->type_name("X,Y,Z")->group("Camera");
-    c.add_option("--target", o.target, "Camera: what it looks at [mm]")->type_name("X,Y,Z")->group("Camera");
-    c.add_flag("--orthographic", o.orthographic, "Camera: parallel projection")->group("Camera");
+    c.add_option("--seed", o.seed, "Seed of the random numbers [0]")->group("Sampling");
+    c.add_option("--feature-samples", o.feature_samples, "Rays per pixel of the noise-free features [4]")
+        ->type_name("1|4")
+        ->group("Sampling");
 
     add_volume_options(c, o.volume);
     add_device_options(c, o.devices, "render");
 }
 
 void add_render_options(CLI::App& c, RenderOptions& o) {
-    c.add_option("-o,--output", o.outputs, "Picture to write: .png, or .exr with all channels (may be given twice)")->type_name("FILE");
+    c.add_option("-o,--output", o.outputs, "Picture to write: .png, .jpg, or .exr with all channels (may be given twice)")
+        ->type_name("FILE")
+        ->group("Output");
+    c.add_flag("--beside", o.beside, "Without -o, write a PNG beside the volume, unless there is one")->group("");
+    add_scene_options(c, o);
+    c.add_flag("--denoise", o.denoise, "Denoise with a trained network; an EXR keeps the noisy picture as noisy.*")->group("Output");
+    c.add_option("--model", o.model, "The network of --denoise (.safetensors) [the one inside clvr]")->type_name("FILE")->group("Output");
     c.add_option("--time", o.seconds, "Stop after about so many seconds, with whole passes of samples")
         ->type_name("SECONDS")
-        ->group("Picture");
-    c.add_option("--turntable", o.turntable, "Write a numbered sequence of N views around the volume")->type_name("N")->group("Picture");
-    c.add_option("--exposure", o.exposure, "PNG: exposure in stops [0]")->group("Picture");
-    c.add_option("--tonemap", o.tonemap, "PNG: filmic, aces, reinhard or none [filmic]")->group("Picture");
-    c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Picture");
-    c.add_flag("--denoise", o.denoise, "Denoise with a trained network; an EXR keeps the noisy picture as noisy.*")->group("Picture");
-    c.add_option("--model", o.model, "The network of --denoise (.safetensors) [the one inside clvr]")->type_name("FILE")->group("Picture");
-    c.add_flag("--list-tf", o.list_transfer, "List the presets")->group("Volume");
-    c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Device");
-    add_scene_options(c, o);
+        ->group("Output");
+    c.add_option("--turntable", o.turntable, "Write a numbered sequence of N views around the volume")->type_name("N")->group("Output");
+    c.add_option("--exposure", o.exposure, "PNG and JPEG: exposure in stops [0]")->group("Output");
+    c.add_option("--tonemap", o.tonemap, "PNG and JPEG: tone curve [filmic]")->type_name("filmic|aces|reinhard|none")->group("Output");
+    c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Output");
+    c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Output");
+    c.add_flag("--list-tf", o.list_transfer, "List the presets of --tf")->group("Look");
 }
 
 Scene scene_of(const RenderOptions& o) {

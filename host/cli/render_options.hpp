@@ -22,7 +22,7 @@ struct RenderOptions {
         environment_rotation;
     std::optional<int> spp, bounces, feature_samples;
     std::optional<std::uint64_t> seed;
-    bool orthographic = false, list_transfer = false, no_features = false, denoise = false;
+    bool orthographic = false, list_transfer = false, no_features = false, denoise = false, beside = false;
     double seconds = 0;
     int turntable = 0;
     std::string model = "default", save_scene;

@@ -3,6 +3,7 @@
 
 #include "host/selftest/selftest.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 #include "runtime/select.hpp"
 
 #include <fmt/format.h>
@@ -93,7 +94,7 @@ void test_devices(const Options& o, const std::vector<const selftest::Check*>& w
             failures += fmt::format("{}{} cannot be trusted, it fails: {}", failures.empty() ? "" : "; ", device_text(facts), failed);
     }
     note("closing");
-    if (o.json) fmt::print("{}\n", nlohmann::json{{"devices", devices}}.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    if (o.json) fmt::print("{}", json_text(nlohmann::json{{"devices", devices}}));
     std::fflush(stdout);
     if (!failures.empty()) throw Error(ErrorKind::device, failures + "; update its driver or choose another --device");
     if (!o.json) fmt::print("every check passed\n");
@@ -126,10 +127,17 @@ void selftest_command(const Options& o) {
 void add_selftest_command(CLI::App& app) {
     const auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand("selftest", "Check that a device computes what it should (exit code 4: it does not)");
-    command->add_option("--device", options->selector, "Device: index, cpu, gpu, part of a name, cpu/2, several joined by +")
-        ->type_name("SEL");
-    command->add_option("--check", options->checks, "Only these checks, joined by commas")->delimiter(',')->type_name("NAME");
-    command->add_flag("--json", options->json, "Write JSON");
+    command->add_option("--device", options->selector, "An index, cpu, gpu, part of a name, cpu/2, several joined by +")
+        ->type_name("SEL")
+        ->group("Device");
+    command->add_option("--check", options->checks, "Only these checks, joined by commas")
+        ->delimiter(',')
+        ->type_name("CHECK")
+        ->group("Checks");
+    command->add_flag("--json", options->json, "Print JSON")->group("Output");
+    command->footer("Examples:\n"
+                    "  clvr selftest\n"
+                    "  clvr selftest --device gpu --check arithmetic\n");
     command->callback([options] { selftest_command(*options); });
 }
 

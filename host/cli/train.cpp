@@ -21,7 +21,7 @@ struct Options {
     std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant", convolution = "direct";
     TrainerConfig trainer;
     int hidden = 20, kernel = 5;
-    bool resume = false, no_augment = false, plain = false, no_demodulation = false;
+    bool resume = false, no_augment = false, plain = false, no_demodulation = false, no_opacity_weight = false;
     DeviceOptions device;
 };
 
@@ -69,6 +69,7 @@ Model start_of(const Options& o) {
     m.hidden = o.hidden;
     m.kernel = o.kernel;
     if (o.no_demodulation) m.demodulation = false;
+    if (o.no_opacity_weight) m.opacity_weight = false;
     if (m.hidden < 1 || m.hidden > 256) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 256", m.hidden), "--hidden");
     if (m.kernel < 1 || m.kernel > 15 || m.kernel % 2 == 0)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected an odd number, 1 to 15", m.kernel), "--kernel");
@@ -132,32 +133,45 @@ void add_train_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("train", "Train a denoiser on folders that `clvr pairs` made");
     auto o = std::make_shared<Options>();
     TrainerConfig& t = o->trainer;
-    c->add_option("DIR", o->folders, "Folders of training pairs");
+    c->add_option("DIR", o->folders, "Folders of training pairs")->type_name("DIR");
     c->add_option("-o,--output", o->output, "Model to write (.safetensors); beside it .last.safetensors, .checkpoint and .training.csv")
-        ->type_name("MODEL");
-    c->add_option("--validate", o->validate, "Folder of test pairs: the best model on its frames is kept")->type_name("DIR");
-    c->add_flag("--resume", o->resume, "Go on from the checkpoint: the same bits as without the interruption");
-    c->add_option("--init", o->init, "Begin with this model's weights and settings")->type_name("MODEL");
-    c->add_option("--epochs", t.epochs, "[200]")->group("Training");
+        ->type_name("FILE")
+        ->group("Output");
+    c->add_flag("--resume", o->resume, "Go on from the checkpoint: the same bits as without the interruption")->group("Output");
+    c->add_option("--validate", o->validate, "Folder of test pairs: the best model on its frames is kept")
+        ->type_name("DIR")
+        ->group("Training");
+    c->add_option("--init", o->init, "Begin with this model's weights and settings; default: the one inside clvr")
+        ->type_name("default|FILE")
+        ->group("Training");
+    c->add_option("--epochs", t.epochs, "How often each view is seen [200]")->group("Training");
     c->add_option("--steps", t.steps, "End after so many steps; 0: with the last epoch [0]")->group("Training");
     c->add_option("--batch", t.step.batch, "Patches a step [128]")->group("Training");
     c->add_option("--patch", t.step.patch, "Width and height of a patch [256]")->group("Training");
     c->add_option("--patches-per-image", t.patches_per_image, "Patches of each view an epoch [50]")->group("Training");
     c->add_option("--lr", t.learning_rate, "Learning rate of Adam [0.0001]")->group("Training");
-    c->add_option("--schedule", o->schedule, "Of the learning rate: constant or cosine [constant]")->group("Training");
+    c->add_option("--schedule", o->schedule, "Of the learning rate: the same throughout, or falling along a cosine [constant]")
+        ->type_name("constant|cosine")
+        ->group("Training");
     c->add_option("--clip-norm", t.step.clip_norm, "Greatest norm of a gradient; 0: not clipped [0]")->group("Training");
-    c->add_option("--loss", o->loss, "shifted-gamma, shifted-gamma-l2, reference, smape or relative-l2 [shifted-gamma]")->group("Training");
-    c->add_option("--target", o->target, "reference, or noisy: another noisy frame of the view [reference]")->group("Training");
+    c->add_option("--loss", o->loss, "What training makes small [shifted-gamma]")
+        ->type_name("shifted-gamma|shifted-gamma-l2|reference|smape|relative-l2")
+        ->group("Training");
+    c->add_option("--target", o->target, "The reference, or another noisy frame of the view [reference]")
+        ->type_name("reference|noisy")
+        ->group("Training");
     c->add_flag("--no-augment", o->no_augment, "Without the 8 dihedral transforms")->group("Training");
     c->add_option("--seed", t.seed, "Of initialisation and patches [0]")->group("Training");
     c->add_option("--conv", o->convolution,
-                  "Convolutions: direct (clvr's kernels, the same bits on every device), or clblast (im2col and CLBlast's SGEMM) [direct]")
+                  "Convolutions: by clvr's kernels, the same bits on every device, or by im2col and CLBlast's SGEMM [direct]")
+        ->type_name("direct|clblast")
         ->group("Training");
     c->add_option("--micro-batch", t.step.micro_batch, "Patches on the device at once; 0: what fits [0]")->group("Training");
-    c->add_option(
-         "--channels", o->channels,
-         "Input channels by their names in frames; default: all that clvr renders and \"noise\", with --plain R G B, albedo, normal, depth")
+    c->add_option("--channels", o->channels,
+                  "Input channels by their names in frames, joined by commas [all that clvr renders and \"noise\"; with --plain R, G, B, "
+                  "albedo, normal, depth]")
         ->delimiter(',')
+        ->type_name("NAME,...")
         ->group("Model");
     c->add_option("--hidden", o->hidden, "Hidden channels [20]")->group("Model");
     c->add_option("--kernel", o->kernel, "Size of the convolutions [5]")->group("Model");
@@ -168,6 +182,12 @@ void add_train_command(CLI::App& app) {
         ->group("Model");
     c->add_flag("--plain", o->plain, "Without exposure, albedo floor and opacity weights: the reference's preprocessing")->group("Model");
     c->add_flag("--no-demodulation", o->no_demodulation, "Without dividing the radiance by the albedo")->group("Model");
+    c->add_flag("--no-opacity-weight", o->no_opacity_weight, "Without weights by opacity.A, which other renderers' files lack")
+        ->group("Model");
+    c->footer("Examples:\n"
+              "  clvr train pairs -o mine.safetensors --init default --patch 128 --batch 8 --epochs 40\n"
+              "  clvr train a b c -o mine.safetensors --validate test\n"
+              "  clvr train pairs -o mine.safetensors --resume\n");
     add_device_options(*c, o->device, "train");
     c->callback([o] { train(*o); });
 }

@@ -74,8 +74,8 @@ void add_volume_options(CLI::App& command, VolumeReadOptions& options) {
             "--dims", [&options](const std::string& text) { options.dims = parse_dims(text); }, "RAW: size in voxels")
         ->type_name("WxHxD")
         ->group(group);
-    command.add_option("--type", options.type, "RAW: uint8, int8, uint16, int16, uint32, int32, float32 or float64")
-        ->type_name("TYPE")
+    command.add_option("--type", options.type, "RAW: type of the voxels")
+        ->type_name("uint8|int8|uint16|int16|uint32|int32|float32|float64")
         ->group(group);
     command
         .add_option_function<std::string>(
@@ -83,7 +83,7 @@ void add_volume_options(CLI::App& command, VolumeReadOptions& options) {
             "Voxel size in mm where the file gives none (RAW, TIFF, PNG, NumPy, HDF5)")
         ->type_name("SXxSYxSZ")
         ->group(group);
-    command.add_option("--endian", options.endian, "RAW: byte order, little or big [little]")->type_name("ORDER")->group(group);
+    command.add_option("--endian", options.endian, "RAW: byte order [little]")->type_name("little|big")->group(group);
 }
 
 } // namespace clvr

@@ -59,8 +59,8 @@ public:
     /// The frame of a filtered colour.
     Frame result(const Buffer& filtered) {
         const std::vector<float> all = device_.download<float>(filtered, std::size_t{3} * shape_.plane);
-        Frame f;
-        f.width = shape_.width, f.height = shape_.height, f.attributes = frame_.attributes;
+        Frame f = frame_.blank();
+        f.attributes = frame_.attributes, f.further = frame_.further;
         for (int c = 0; c < 3; ++c) {
             std::vector<float>& to = f.channel(colours[c]);
             const std::vector<float>* const background = frame_.find(std::string("background.") + colours[c]);

@@ -61,17 +61,29 @@ shared::SourceParams ChannelPlan::params(double exposure) const {
     return p;
 }
 
-void ChannelPlan::check(const Frame& frame) const {
+std::vector<std::string> ChannelPlan::missing(const Frame& frame) const {
+    std::vector<std::string> names;
     for (const auto& name : planes_) {
         if (name.rfind("target.", 0) == 0) continue;
         const bool there = name == noise_channel ? frame.attributes.count("clvr.spp") != 0 : frame.has(name);
-        if (there) continue;
-        std::vector<std::string> has;
-        for (const auto& [channel, values] : frame.channels) has.push_back(channel);
-        throw Error(ErrorKind::input, fmt::format("lacks {} that the model reads; it has {}",
-                                                  name == noise_channel ? "the attribute clvr.spp (--spp gives it)" : "channel " + name,
-                                                  fmt::join(has, " ")));
+        if (!there) names.push_back(name);
     }
+    return names;
+}
+
+void ChannelPlan::check(const Frame& frame) const {
+    std::vector<std::string> names = missing(frame);
+    if (names.empty()) return;
+    std::vector<std::string> has;
+    for (const auto& [channel, values] : frame.channels) has.push_back(channel);
+    const auto noise = std::find(names.begin(), names.end(), noise_channel);
+    const bool samples = noise != names.end();
+    if (samples) names.erase(noise);
+    const char* const plural = names.size() == 1 ? "" : "s";
+    throw Error(ErrorKind::input, fmt::format("lacks {}{}{} that the model reads; it has {}",
+                                              names.empty() ? "" : fmt::format("channel{} {}", plural, fmt::join(names, " ")),
+                                              samples && !names.empty() ? " and " : "",
+                                              samples ? "the attribute clvr.spp (--spp gives it)" : "", fmt::join(has, " ")));
 }
 
 BeautyWithoutBackground::BeautyWithoutBackground(const Frame& frame, const std::string& colour) : beauty_(frame.at(colour).data()) {

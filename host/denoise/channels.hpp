@@ -10,12 +10,6 @@
 
 namespace clvr {
 
-/// Part of a picture [pixels].
-struct Region {
-    int x = 0, y = 0, width = 0, height = 0;
-    std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
-};
-
 /// Which planes a model needs of a frame, and what becomes of them.
 class ChannelPlan {
 public:
@@ -29,7 +23,9 @@ public:
     /// The model's switches and plane numbers; `exposure` from exposure_of.
     shared::SourceParams params(double exposure) const;
 
-    /// Throws Error{input} naming the first channel that is missing, and what the frame has.
+    /// Channels that the model reads and the frame lacks; "noise" where it does not say its samples per pixel.
+    std::vector<std::string> missing(const Frame& frame) const;
+    /// Throws Error{input} naming them, and what the frame has.
     void check(const Frame& frame) const;
     /// Appends the planes of a region, beauty without background, to `planes`; returns how many values were not finite and became 0.
     /// `target`: the frame of the target planes, or null.

@@ -10,7 +10,8 @@ namespace clvr {
 
 namespace {
 
-constexpr double left = 56, right = 548, top = 28, bottom = 236;
+constexpr double width = 560, left = 56, right = 548, top = 28, bottom = 236;
+constexpr double character = 6.5; // a wide guess of a letter's width, in units: what SVG text takes is not known here
 constexpr std::array<const char*, 6> colours{"#999999", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"}; // M. Okabe, K. Ito
 
 struct Axis {
@@ -41,10 +42,31 @@ struct Axis {
         }
         const double rough = (high - low) / 5, power = std::pow(10, std::floor(std::log10(rough))), part = rough / power;
         const double step = power * (part < 1.5 ? 1 : part < 3.5 ? 2 : part < 7.5 ? 5 : 10);
-        for (double v = std::ceil(low / step); v * step <= high; v += 1) at.push_back(v * step);
+        for (double v = std::ceil(low / step); v * step <= high; v += 1) at.push_back(v * step + 0.0); // never -0
         return at;
     }
 };
+
+/// Letters of a text in UTF-8.
+std::size_t letters(const std::string& text) {
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+/// The middle of a label that is to stand at x, moved so that all of it is on the picture.
+double middle_of(const std::string& label, double x) {
+    const double half = static_cast<double>(letters(label)) * character / 2;
+    return std::max(half, std::min(x, width - half));
+}
+
+/// A text cut to so many units, with an ellipsis where it was longer.
+std::string fitted(const std::string& text, double units) {
+    const auto most = static_cast<std::size_t>(std::max(2.0, units / character));
+    if (letters(text) <= most) return text;
+    std::size_t end = 0;
+    for (std::size_t n = 0; end < text.size(); ++end)
+        if ((text[end] & 0xc0) != 0x80 && ++n == most) break; // the first byte of the letter that the ellipsis replaces
+    return text.substr(0, end) + "\u2026";
+}
 
 } // namespace
 
@@ -89,9 +111,11 @@ std::string line_chart(const std::string& title, const std::string& x_label, con
                            "text-anchor=\"end\">{5:.4g}</text>\n",
                            left, right, axis.y(v), left - 6, axis.y(v) + 4, v);
     const std::size_t every = std::max<std::size_t>(1, (count + 9) / 10);
-    for (std::size_t k = 0; k < count; k += every)
-        svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", x(k), bottom + 16,
-                           k < x_names.size() ? escaped(x_names[k]) : std::to_string(k + 1));
+    for (std::size_t k = 0; k < count; k += every) {
+        const std::string name = k < x_names.size() ? x_names[k] : std::to_string(k + 1);
+        svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", middle_of(name, x(k)), bottom + 16,
+                           escaped(name));
+    }
     svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", (left + right) / 2, bottom + 32, escaped(x_label));
     for (std::size_t s = 0; s < series.size(); ++s) {
         const char* colour = colours[s % colours.size()];
@@ -103,10 +127,10 @@ std::string line_chart(const std::string& title, const std::string& x_label, con
             if (count <= 40) svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\"/>\n", x(k), axis.y(v), colour);
         }
         svg += fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\"/>\n", points, colour);
-        const double at = left + static_cast<double>(s) * (right - left) / static_cast<double>(series.size());
+        const double share = (right - left) / static_cast<double>(series.size()), at = left + static_cast<double>(s) * share;
         svg +=
             fmt::format("<rect x=\"{0:.1f}\" y=\"288\" width=\"10\" height=\"3\" fill=\"{1}\"/><text x=\"{2:.1f}\" y=\"294\">{3}</text>\n",
-                        at, colour, at + 14, escaped(series[s].name));
+                        at, colour, at + 14, escaped(fitted(series[s].name, share - 18)));
     }
     return svg + "</svg>\n";
 }

@@ -7,6 +7,7 @@
 #include "host/io/picture/frame_file.hpp"
 #include "host/train/pairs.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 #include "runtime/sha256.hpp"
 
 #include <algorithm>
@@ -142,7 +143,7 @@ std::vector<AblationScore> scores_of(const Candidate& candidate, const std::vect
             const Evaluation e = evaluate({candidate}, test.folder, test.frames[k], [&](double) { seen(); });
             wanted.push_back({test.name, spp[k], e.scores.front().mean});
             known.push_back(wanted.back());
-            write_text(ordered_json{{"scores", json_of(known)}}.dump(1) + "\n", path);
+            write_text(json_text(ordered_json{{"scores", json_of(known)}}), path);
         }
     return wanted;
 }
@@ -239,7 +240,7 @@ std::vector<AblationResult> run_ablation(const AblationSettings& s, const std::s
     ordered_json all{{"clvr.format", "ablation-results/1"}, {"device", device.facts().name}, {"version", provenance.version}};
     if (!provenance.commit.empty()) all["commit"] = provenance.commit;
     all.update({{"command", provenance.command}, {"settings", ordered_json::parse(settings)}, {"rows", json_rows}});
-    write_text(all.dump(1) + "\n", path("ablation.json"));
+    write_text(json_text(all), path("ablation.json"));
     const TrainerConfig& t = s.training;
     write_text(
         fmt::format(

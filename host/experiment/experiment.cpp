@@ -7,8 +7,10 @@
 #include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/scene/scene_inputs.hpp"
+#include "host/io/volume/dataset_path.hpp"
 #include "host/io/volume/volume_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -131,7 +133,7 @@ private:
         for (const Measurement& m : measurements)
             frames.push_back({{"spp", m.spp}, {"baselines", to_json(m.baselines)}, {"mean", to_json(m.evaluation).at("mean")}});
         results["frames"] = frames;
-        write_text(results.dump(1) + "\n", path("results.json"));
+        write_text(json_text(results), path("results.json"));
 
         const std::string volume =
             s_.computed.empty() ? "a file" : fmt::format("computed, {} {}", fmt::join(s_.size.dims, "x"), voxel_type_name(s_.size.type));
@@ -181,7 +183,8 @@ ExperimentOutcome run_experiment(const ExperimentSettings& settings, const std::
                                  const Provenance& provenance, const ExperimentControl& control) {
     validate(settings);
     // Before anything is written; later on, the pairs may have made it unnecessary.
-    if (settings.computed.empty() && !fs::exists(volume_path(settings, folder)) && !fs::exists(fs::path(folder) / "experiment.json"))
+    if (settings.computed.empty() && !fs::exists(split_dataset_path(volume_path(settings, folder)).file) &&
+        !fs::exists(fs::path(folder) / "experiment.json"))
         throw Error(ErrorKind::input, "there is no such file or folder", volume_path(settings, folder));
     begin_folder(to_json(settings), folder);
     return Run(settings, folder, devices, provenance, control)();

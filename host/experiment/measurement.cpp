@@ -2,6 +2,7 @@
 #include "host/eval/evaluation_json.hpp"
 #include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ void write_measurements(const std::vector<Measurement>& measurements, const std:
         frame.update(to_json(m.evaluation));
         frames.push_back(frame);
     }
-    const std::string text = ordered_json{{"clvr.format", "evaluation/1"}, {"frames", frames}}.dump(1) + "\n";
+    const std::string text = json_text(ordered_json{{"clvr.format", "evaluation/1"}, {"frames", frames}});
     write_atomically(path, text.data(), text.size());
 }
 

@@ -23,17 +23,11 @@ double magma(double v, int c) {
     return srgb_decoded((stations[k][c] + (at - k) * (stations[k + 1][c] - stations[k][c])) / 255);
 }
 
-Frame as_large(const Frame& frame) {
-    Frame f;
-    f.width = frame.width, f.height = frame.height;
-    return f;
-}
-
 } // namespace
 
 Frame flip_picture(const Frame& image, const Frame& reference) {
     const std::vector<double> map = flip_map(image, reference);
-    Frame picture = as_large(image);
+    Frame picture = image.blank();
     for (int c = 0; c < 3; ++c) {
         std::vector<float>& plane = picture.channel(colours[c]);
         for (std::size_t i = 0; i < map.size(); ++i) plane[i] = static_cast<float>(magma(map[i], c));
@@ -43,7 +37,7 @@ Frame flip_picture(const Frame& image, const Frame& reference) {
 
 Frame difference_picture(const Frame& image, const Frame& reference) {
     const auto display = [](double v) { return std::pow(std::clamp(v, 0.0, 1.0), 1 / 2.2); };
-    Frame picture = as_large(image);
+    Frame picture = image.blank();
     for (const char* c : colours) {
         std::vector<float>& plane = picture.channel(c);
         const std::vector<float>&a = image.at(c), &b = reference.at(c);

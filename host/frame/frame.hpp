@@ -1,19 +1,41 @@
 // A finished picture with its channels, as the renderer makes it and EXR files hold it.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace clvr {
 
+/// Part of a picture [pixels].
+struct Region {
+    int x = 0, y = 0, width = 0, height = 0;
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
+    friend bool operator==(const Region& a, const Region& b) {
+        return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
+    }
+    friend bool operator!=(const Region& a, const Region& b) { return !(a == b); }
+};
+
 /// Channels are planar float32, row 0 on top, width*height values each, named as in DESIGN.md section 4 "Frames":
 /// R G B A (linear, premultiplied), albedo.R ..., normal.X ..., depth.Z, opacity.A, depth.deviation, depth.half, variance.R ...,
 /// background.R ...
 struct Frame {
+    /// What a file says beside its pixels in another type than text, kept for the next file: the bytes of the value as OpenEXR writes them.
+    struct Attribute {
+        std::string type, bytes;
+        bool operator==(const Attribute& other) const { return type == other.type && bytes == other.bytes; }
+    };
+
     int width = 0, height = 0;
+    int x = 0, y = 0;              ///< of the first pixel: a crop's place in the whole picture, below 0 for what lies beyond its edge
+    std::optional<Region> display; ///< the whole picture, where that is not the frame itself (OpenEXR's display window)
+    float pixel_aspect = 1;        ///< width of a pixel over its height
     std::map<std::string, std::vector<float>> channels;
     std::map<std::string, std::string>
         attributes; ///< provenance: "clvr.volume.sha256", "clvr.scene", "clvr.seed", "clvr.spp", "clvr.device", ...
+    std::map<std::string, Attribute> further; ///< of a file that was read: chromaticities, worldToCamera, ...
+    std::vector<std::string> notes;           ///< how its reader understood what may surprise, a sentence each; commands print them
 
     std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
     bool has(const std::string& name) const { return channels.count(name) != 0; }
@@ -29,12 +51,25 @@ struct Frame {
         c.resize(pixels());
         return c;
     }
+    Region window() const { return {x, y, width, height}; }
+    /// The part of the plane that a picture for people shows; pixels of it outside window() are black and clear.
+    Region shown() const { return display.value_or(window()); }
+    /// A frame of the same size and place without channels.
+    Frame blank() const {
+        Frame f;
+        f.width = width, f.height = height, f.x = x, f.y = y, f.display = display, f.pixel_aspect = pixel_aspect;
+        return f;
+    }
     /// The opacity with which the picture is shown: A; null where it is opaque, as it has none or lies over a background (background.R ...;
     /// A is the camera rays' opacity there, too).
     const std::vector<float>* shown_alpha() const { return has("background.R") ? nullptr : find("A"); }
     /// The best that is known of the camera rays' opacity: opacity.A (free of noise), else A, else null.
     const std::vector<float>* opacity() const { return has("opacity.A") ? find("opacity.A") : find("A"); }
 };
+
+/// The frame cut to shown(), with 0 in all channels where it has no pixels, and that part's corner as (0, 0). Throws Error{input}
+/// when that is more than 2^28 pixels.
+Frame shown_part(const Frame& frame);
 
 /// SHA-256 (hex) over size, channel names in order and the bits of every pixel; attributes do not count.
 std::string pixel_hash(const Frame& frame);

@@ -21,6 +21,10 @@ void check(const Frame& image, const Frame& reference) {
     if (image.width != reference.width || image.height != reference.height)
         throw Error(ErrorKind::input, fmt::format("{} x {} pixels against {} x {}: the sizes differ", image.width, image.height,
                                                   reference.width, reference.height));
+    if (image.x != reference.x || image.y != reference.y)
+        throw Error(ErrorKind::input,
+                    fmt::format("the pixels begin at ({}, {}) against ({}, {}) of the whole picture: cut both to the same part", image.x,
+                                image.y, reference.x, reference.y));
     for (const Frame* f : {&image, &reference})
         for (const char* c : colours) {
             if (!f->has(c))

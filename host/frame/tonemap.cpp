@@ -59,8 +59,7 @@ Rgb ToneCurve::operator()(const Rgb& straight) const {
 
 Frame tonemapped(const Frame& frame, const Tonemap& tonemap) {
     const ToneCurve curve(tonemap);
-    Frame display;
-    display.width = frame.width, display.height = frame.height;
+    Frame display = frame.blank();
     const std::vector<float>*r = &frame.at("R"), *g = &frame.at("G"), *b = &frame.at("B"), *a = frame.shown_alpha();
     if (a) display.channels["A"] = *a;
     std::vector<float>* to[3] = {&display.channel("R"), &display.channel("G"), &display.channel("B")};

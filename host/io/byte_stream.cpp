@@ -125,11 +125,28 @@ bool is_gzip(const std::string& path) {
     return head == "\x1f\x8b";
 }
 
-std::string read_head(const std::string& path, std::size_t limit) {
-    ByteStream stream(path, ByteStream::Coding::plain);
+ByteStream open_inside(const std::string& path) {
+    return ByteStream(path, is_gzip(path) ? ByteStream::Coding::deflated : ByteStream::Coding::plain);
+}
+
+namespace {
+
+std::string first_bytes(ByteStream& stream, std::size_t limit) {
     std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, stream.capacity())), '\0');
     head.resize(stream.read(head.data(), head.size()));
     return head;
+}
+
+} // namespace
+
+std::string read_head(const std::string& path, std::size_t limit) {
+    ByteStream stream(path, ByteStream::Coding::plain);
+    return first_bytes(stream, limit);
+}
+
+std::string read_head_inside(const std::string& path, std::size_t limit) {
+    ByteStream stream = open_inside(path);
+    return first_bytes(stream, limit);
 }
 
 } // namespace clvr

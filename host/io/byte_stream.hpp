@@ -42,7 +42,11 @@ private:
 
 /// Whether the file starts as a gzip file does.
 bool is_gzip(const std::string& path);
+/// A file from its start: what gzip packs where it is a gzip file, else its plain bytes.
+ByteStream open_inside(const std::string& path);
 /// The first bytes of a file, at most `limit`. Throws Error{input}.
 std::string read_head(const std::string& path, std::size_t limit);
+/// The first bytes of what open_inside reads.
+std::string read_head_inside(const std::string& path, std::size_t limit);
 
 } // namespace clvr

@@ -53,19 +53,20 @@ Outcome check_gradient(Device& device) {
     std::string found;
     std::size_t first = 0;
     for (const auto& [name, count] : tensors) {
+        const std::size_t end = first + count; // a lambda may not capture `count` (C++17, and clang says so)
         double squares = 0;
-        for (std::size_t i = first; i < first + count; ++i) squares += static_cast<double>(gradient[i]) * gradient[i];
+        for (std::size_t i = first; i < end; ++i) squares += static_cast<double>(gradient[i]) * gradient[i];
         const double norm = std::sqrt(squares);
         const auto loss_at = [&](double by) {
             state.parameters = start;
-            for (std::size_t i = first; i < first + count; ++i) state.parameters[i] += static_cast<float>(by * gradient[i] / norm);
+            for (std::size_t i = first; i < end; ++i) state.parameters[i] += static_cast<float>(by * gradient[i] / norm);
             training_step.set_state(state);
             return training_step.gradient(crops, unused);
         };
         const double slope = (loss_at(step) - loss_at(-step)) / (2 * step), share = slope / norm;
         ok &= norm > 0 && std::abs(share - 1) <= tolerance;
         found += fmt::format("{}{} {:.4f}", found.empty() ? "" : ", ", name, share);
-        first += count;
+        first = end;
     }
     return {ok, fmt::format("slope over gradient 1 within {}", tolerance), found};
 }

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 namespace clvr::bench {
 namespace {
 
@@ -120,6 +122,15 @@ TEST(Json, Shape) {
     for (const std::string& task : task_names()) EXPECT_NE(j.at("recommendations").at(task).at("reason"), "");
 }
 
+TEST(Json, GivesTheReportBack) {
+    const Report first = report();
+    const nlohmann::json j = report_json(first);
+    const Report again = report_from_json(nlohmann::json::parse(j.dump()));
+    EXPECT_EQ(report_json(again), j);
+    EXPECT_EQ(report_html(again), report_html(first));
+    EXPECT_THROW(report_from_json(nlohmann::json::object()), nlohmann::json::exception);
+}
+
 TEST(Table, SaysStatusAndReason) {
     const std::string text = table_text(report().devices[1]);
     EXPECT_THAT(text, AllOf(HasSubstr("device 1 \"GPU\""), HasSubstr("82 %"), HasSubstr("unsupported: no <luck>"), HasSubstr("12 ms"),
@@ -137,6 +148,49 @@ TEST(Html, IsSelfContainedAndEscaped) {
     for (std::size_t at = 0; (at = html.find("</svg>", at)) != std::string::npos; ++at) ++closed;
     EXPECT_EQ(opened, closed);
     EXPECT_GE(opened, 2u + 6u) << "two rooflines, bars of six stages";
+}
+
+TEST(Html, OneDeviceIsHeldAgainstItsCeilings) {
+    Report one;
+    one.devices = {device(0, "CPU", 1)};
+    fill_shares(one.devices[0]);
+    const std::string html = report_html(one);
+    EXPECT_THAT(html, AllOf(HasSubstr("Share of the device's ceilings"), HasSubstr("82 % of FMA rate"), Not(HasSubstr("Speed by stage"))));
+    EXPECT_THAT(report_html(report()), AllOf(HasSubstr("Speed by stage"), Not(HasSubstr("Share of the device's ceilings"))));
+}
+
+/// The texts of a picture by what they say: where they stand, and about how wide they are.
+struct Placed {
+    double x0, x1, y;
+};
+std::vector<Placed> placed(const std::string& svg, const std::string& with) {
+    std::vector<Placed> all;
+    static const std::regex text("<text x=\"([0-9.]+)\" y=\"([0-9.]+)\" text-anchor=\"(start|end)\">([^<]*)</text>");
+    for (std::sregex_iterator it(svg.begin(), svg.end(), text), end; it != end; ++it) {
+        if ((*it)[4].str().find(with) == std::string::npos) continue;
+        const double x = std::stod((*it)[1]), width = 6 * static_cast<double>((*it)[4].length());
+        all.push_back({(*it)[3] == "start" ? x : x - width, (*it)[3] == "start" ? x + width : x, std::stod((*it)[2])});
+    }
+    return all;
+}
+
+TEST(Html, LabelsOfTheRooflineStandApart) {
+    DeviceRows d = device(0, "CPU", 1);
+    d.rows.resize(2);
+    for (int k = 0; k < 7; ++k) { // all at about the same place
+        d.rows.push_back(row("stage number " + std::to_string(k), 1));
+        d.rows.back().flops = (50 + k) * 1e9, d.rows.back().intensity = 1000 + k;
+    }
+    const std::string svg = roofline_svg(d);
+    const std::vector<Placed> labels = placed(svg, "stage number");
+    ASSERT_EQ(labels.size(), 7u) << svg;
+    for (std::size_t a = 0; a < labels.size(); ++a) {
+        EXPECT_GE(labels[a].x0, 64);
+        EXPECT_LE(labels[a].x1, 620);
+        for (std::size_t b = a + 1; b < labels.size(); ++b)
+            EXPECT_TRUE(std::abs(labels[a].y - labels[b].y) >= 12 || labels[a].x1 <= labels[b].x0 || labels[b].x1 <= labels[a].x0)
+                << a << " " << b << svg;
+    }
 }
 
 TEST(Html, NoCeilingNoRoofline) {

@@ -82,6 +82,47 @@ TEST_F(Render, WritesPictureAndChannels) {
     for (const std::size_t corner : {0, 39, 35 * 40, 35 * 40 + 39}) EXPECT_EQ(frame.at("opacity.A")[corner], 0.0f);
 }
 
+TEST_F(Render, EveryOrderOfOptionsAndArguments) {
+    const std::vector<std::string> options{"--tf", "dense.json", "--size", "20x16", "--spp", "1", "-o", "a.png", "-o", "a.exr"};
+    std::vector<std::string> before = options, after = options;
+    before.push_back("ball_24x20x16_uint8.raw");
+    after.insert(after.begin(), "ball_24x20x16_uint8.raw");
+    for (const auto& words : {before, after}) {
+        const Outcome o = run(words);
+        ASSERT_EQ(o.exit_code, 0) << o.err;
+        EXPECT_TRUE(std::filesystem::remove(path("a.png")) && std::filesystem::remove(path("a.exr")));
+    }
+}
+
+TEST_F(Render, AVolumeAloneWritesAPictureBesideIt) {
+    const auto clvr = [&](std::vector<std::string> words) { return Child(words, {}, folder.path()).wait(); };
+    const std::string ball = path("ball_24x20x16_uint8.raw"), picture = path("ball_24x20x16_uint8.png");
+    ASSERT_EQ(clvr({ball, "--size", "20x16", "--spp", "1"}).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::remove(picture));
+    ASSERT_EQ(clvr({"--size", "20x16", "--spp", "1", ball}).exit_code, 0);
+    const Outcome o = clvr({ball, "--size", "20x16", "--spp", "1"}); // it is there
+    EXPECT_EQ(o.exit_code, 2);
+    EXPECT_THAT(o.err, AllOf(HasSubstr(picture + ": exists"), HasSubstr("-o ")));
+    EXPECT_EQ(clvr({ball, "--size", "20x16", "--spp", "1", "-o", picture}).exit_code, 0);
+}
+
+TEST_F(Render, SaysWhatAMistypedWordMayMean) {
+    const auto says = [&](std::vector<std::string> words, int code) {
+        const Outcome o = Child(words, {}, folder.path()).wait();
+        EXPECT_EQ(o.exit_code, code);
+        return o.err;
+    };
+    EXPECT_EQ(says({"rendr"}, 2), "clvr: there is no command or file \"rendr\": did you mean render?\n");
+    EXPECT_THAT(says({"render", "scan.nii", "--sp", "4"}, 2), HasSubstr("clvr: render has no option --sp: did you mean --spp?"));
+    EXPECT_THAT(says({"dataset", "make", "head", "--dimz", "4"}, 2),
+                HasSubstr("clvr: dataset make has no option --dimz: did you mean --dims?"));
+    EXPECT_THAT(says({"--nonsense"}, 2), HasSubstr("clvr: there is no option --nonsense (see clvr --help)"));
+    EXPECT_EQ(says({"nowhere.nii.gz"}, 3), "clvr: nowhere.nii.gz: does not exist\n");
+    const Outcome alone = Child({}, {}, folder.path()).wait();
+    EXPECT_EQ(alone.exit_code, 0);
+    EXPECT_THAT(alone.out, AllOf(HasSubstr("Usage: clvr COMMAND"), HasSubstr("\nExamples:\n")));
+}
+
 TEST_F(Render, SavedScenesGiveThePictureAgainBitForBit) {
     ASSERT_EQ(run_ball({"-o",         "a.exr",         "--save-scene", "scene.json", "--seed",
                         "7",          "--azimuth",     "77.3",         "--phase-g",  "0.3",

@@ -6,7 +6,9 @@
 #include "host/io/scene/scene_file.hpp"
 #include "host/volume/embedded_presets.hpp"
 #include "runtime/embedded.hpp"
-#include "tests/io/volume_formats.hpp"
+#include "tests/fuzz/volume_samples.hpp"
+#include "tests/io/exr_writers.hpp"
+#include "tests/io/volume_writers.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -17,38 +19,7 @@ namespace clvr::test {
 
 namespace {
 
-namespace fs = std::filesystem;
 using Samples = std::vector<FuzzSample>;
-
-bool starts(const std::string& s, const std::string& start) { return s.compare(0, start.size(), start) == 0; }
-bool ends(const std::string& s, const std::string& end) {
-    return s.size() >= end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
-}
-
-bool is_sample(const FuzzTarget& target, const std::string& format) {
-    const std::string& wanted = target.format.empty() ? target.name : target.format;
-    return wanted.front() == '*' ? ends(format, wanted.substr(1)) : starts(format, wanted);
-}
-
-/// What the writer of a format leaves in a folder, what is read first.
-std::vector<std::string> files_of(const VolumeFormat& format, const Sample& sample) {
-    const Folder folder;
-    const Written written = format.write(folder, sample);
-    std::vector<std::string> paths;
-    for (const auto& entry : fs::recursive_directory_iterator(folder.path()))
-        if (entry.is_regular_file()) paths.push_back(entry.path().string());
-    std::sort(paths.begin(), paths.end());
-    std::stable_partition(paths.begin(), paths.end(), [&](const std::string& path) { return path == written.path; });
-    std::vector<std::string> files;
-    for (const std::string& path : paths) files.push_back(read(path));
-    return files;
-}
-
-std::string joined(const std::vector<std::string>& files) {
-    std::string bytes;
-    for (std::size_t i = 0; i < files.size(); ++i) bytes += (i ? std::string(file_mark) : "") + files[i];
-    return bytes;
-}
 
 /// What a writer to a path writes.
 std::string written(const std::function<void(const std::string& path)>& write) {
@@ -74,17 +45,6 @@ Frame frame_of(const std::vector<std::string>& channels) {
 }
 std::string exr_of(const std::vector<std::string>& channels) {
     return written([&](const std::string& path) { write_exr(frame_of(channels), path); });
-}
-
-Samples raw_samples() {
-    const Sample s;
-    const std::string voxels = bytes_of(s.voxels), mark(file_mark);
-    const std::string dims = R"({"dims": [5, 4, 3], "type": "int16")";
-    return {{"sidecar", voxels + mark + dims + "}"},
-            {"geometry",
-             deflated(voxels) + mark + dims +
-                 R"(, "endian": "big", "spacing": [0.5, 0.75, 2], "origin": [-10.5, 20, 31], "direction": [0, 1, 0, 1, 0, 0, 0, 0, 1],
-                                 "slope": 2, "intercept": -1, "modality": "CT"})"}};
 }
 
 Samples environment_samples() {
@@ -163,7 +123,6 @@ Samples tensor_samples() {
 /// Of what is no volume.
 const std::map<std::string, Samples (*)()>& other_samples() {
     static const std::map<std::string, Samples (*)()> samples{
-        {"raw", raw_samples},
         {"exr",
          [] {
              return Samples{
@@ -182,6 +141,15 @@ const std::map<std::string, Samples (*)()>& other_samples() {
                              })}};
          }},
         {"environment", environment_samples},
+        {"radiance", environment_samples},
+        {"pfm",
+         [] {
+             return Samples{{"grey", "Pf\n2 2\n-1.0\n0123456789abcdef"}, {"rgb", "PF\n1 1\n1.0\n0123456789ab"}};
+         }},
+        {"jpeg",
+         [] {
+             return Samples{{"rgb", written([](const std::string& path) { write_jpeg(frame_of({"R", "G", "B"}), {}, path); })}};
+         }},
         {"scene", scene_samples},
         {"transfer_function", transfer_function_samples},
         {"model", model_samples},
@@ -210,13 +178,7 @@ const std::map<std::string, Samples (*)()>& other_samples() {
 
 std::vector<FuzzSample> fuzz_samples(const FuzzTarget& target) {
     if (const auto other = other_samples().find(target.name); other != other_samples().end()) return other->second();
-    Samples samples;
-    for (const VolumeFormat& format : volume_formats()) {
-        if (!is_sample(target, format.name)) continue;
-        const std::vector<std::string> files = files_of(format, Sample());
-        if (files.size() <= target.files.size()) samples.push_back({format.name, joined(files)});
-    }
-    return samples;
+    return volume_samples(target);
 }
 
 } // namespace clvr::test

@@ -75,6 +75,8 @@ void volume(const std::string& path) {
 }
 
 Voxels tiff(const std::string& path, const VolumeReadOptions& options) { return read_tiff(path, {path}, options); }
+Voxels png_slice(const std::string& path, const VolumeReadOptions& options) { return read_png_slices(path, {path}, options); }
+Voxels jpeg_slice(const std::string& path, const VolumeReadOptions& options) { return read_jpeg_slices(path, {path}, options); }
 Voxels folder(const std::string& path, const VolumeReadOptions& options) {
     return read_volume(fs::path(path).parent_path().string(), options);
 }
@@ -113,7 +115,10 @@ void exr(const std::string& path) {
     require(std::all_of(planes.begin(), planes.end(), [](float x) { return std::isfinite(x); }), "a plane that is not finite");
 }
 
-void png(const std::string& path) { check_frame(read_png(path)); }
+template <Frame (*reader)(const std::string& path)>
+void picture(const std::string& path) {
+    check_frame(reader(path));
+}
 
 void environment(const std::string& path) {
     const RgbImage image = read_environment_image(path);
@@ -192,14 +197,27 @@ const std::vector<FuzzTarget>& fuzz_targets() {
         {"nifti", {"a.nii"}, volume<read_nifti>},
         {"nifti_pair", {"a.hdr", "a.img"}, volume<read_nifti>},
         {"nrrd", {"a.nrrd", "a.raw"}, volume<read_nrrd>},
+        {"nrrd_list", {"a.nhdr", "s00.raw", "s01.raw", "s02.raw"}, volume<read_nrrd>},
         {"metaimage", {"a.mha", "a.raw"}, volume<read_metaimage>},
+        {"metaimage_list", {"a.mhd", "s00.raw", "s01.raw", "s02.raw"}, volume<read_metaimage>},
         {"vtk", {"a.vtk"}, volume<read_vtk>},
+        {"vti", {"a.vti"}, volume<read_vti>},
+        {"numpy", {"a.npy"}, volume<read_numpy>},
+        {"mrc", {"a.mrc"}, volume<read_mrc>},
+        {"mgh", {"a.mgh"}, volume<read_mgh>, ErrorKind::input, "mg"},
+        {"hdf5", {"a.h5"}, volume<read_hdf5>},
+        {"imaris", {"a.ims"}, volume<read_hdf5>},
         {"tiff", {"a.tif"}, volume<tiff>},
         {"slices", {"stack/8", "stack/9", "stack/10"}, volume<folder>, ErrorKind::input, "*_folder"},
         {"dicom", {"series/0", "series/1", "series/2"}, dicom},
         {"raw", {"a.raw", "a.json"}, volume<read_raw>},
         {"exr", {"a.exr"}, exr},
-        {"png", {"a.png"}, png},
+        {"png", {"a.png"}, picture<read_png>},
+        {"png_slice", {"a.png"}, volume<png_slice>},
+        {"jpeg_slice", {"a.jpg"}, volume<jpeg_slice>},
+        {"pfm", {"a.pfm"}, picture<read_pfm>},
+        {"jpeg", {"a.jpg"}, picture<read_jpeg>},
+        {"radiance", {"a.hdr"}, picture<read_radiance>},
         {"environment", {"a.hdr"}, environment},
         {"scene", {"a.json"}, scene},
         {"transfer_function", {"a.json"}, transfer_function},

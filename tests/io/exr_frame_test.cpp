@@ -148,6 +148,19 @@ TEST(ExrFrameTest, AHeaderThatPromisesTooMuchFailsBeforeItIsAllocated) {
     EXPECT_THAT(with_size(-5, 7), HasSubstr("b.exr"));
 }
 
+TEST(ExrFrameTest, AnAttributeLongerThanTheFileIsRefused) {
+    const Folder folder;
+    Frame frame = test::noise(8, 8, {"R"});
+    frame.attributes["clvr.note"] = "short";
+    write_exr(frame, folder / "a.exr");
+    std::string bytes = test::bytes_of(folder / "a.exr");
+    const std::size_t size = bytes.find("clvr.note") + std::strlen("clvr.note") + 1 + std::strlen("string") + 1;
+    bytes[size + 3] = 0x40; // 1 GiB
+    test::put(folder / "b.exr", bytes);
+    EXPECT_THAT(error_of([&] { read_exr(folder / "b.exr"); }).line(),
+                HasSubstr("attribute clvr.note has 1073741829 bytes, more than the file"));
+}
+
 TEST(ExrFrameTest, WhatIsNoExrIsNamed) {
     const Folder folder;
     EXPECT_THAT(error_of([&] { read_exr(folder / "none.exr"); }).line(), HasSubstr("No such file"));

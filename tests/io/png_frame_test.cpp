@@ -145,6 +145,9 @@ TEST(FramePathTest, AGoodPlaceIsLeftAsItWas) {
     const Folder folder;
     check_frame_path(folder / "a.exr");
     check_frame_path(folder / "b.PNG");
+    check_frame_path(folder / "b.JPG");
+    check_frame_path(folder / "b.jpeg");
+    check_frame_path(folder / "b.Exr");
     EXPECT_EQ(folder.entries(), 0u);
     test::put(folder / "c.png", "old");
     check_frame_path(folder / "c.png");
@@ -157,7 +160,8 @@ TEST(FramePathTest, BadPlacesAreFoundBeforeRendering) {
     std::filesystem::create_directory(folder / "d.png");
     EXPECT_THAT(error_of([&] { check_frame_path(folder / "d.png"); }).line(), HasSubstr("is a folder"));
     EXPECT_THAT(error_of([&] { check_frame_path(folder / "no/such/a.png"); }).line(), HasSubstr("there is no folder"));
-    EXPECT_THAT(error_of([&] { check_frame_path(folder / "a.jpg"); }).line(), HasSubstr("'.jpg'; expected .exr"));
+    EXPECT_THAT(error_of([&] { check_frame_path(folder / "a.tif"); }).line(),
+                HasSubstr("'.tif'; expected .png or .jpg (a picture) or .exr"));
     EXPECT_THAT(error_of([&] { check_frame_path(folder / "png"); }).line(), HasSubstr("ending ''"));
     test::put(folder / "file", "x");
     EXPECT_THAT(error_of([&] { check_frame_path(folder / "file/a.png"); }).line(), HasSubstr("no folder"));

@@ -1,6 +1,6 @@
 // DICOM: which slices make a volume, in which order, and what is refused.
 #include "host/io/volume/volume_file.hpp"
-#include "tests/io/volume_writers.hpp"
+#include "tests/io/dicom_writers.hpp"
 
 #include <gmock/gmock.h>
 
@@ -136,6 +136,31 @@ TEST_F(VolumeDicom, ManyTimesAtEveryPlaceAreFrames) {
     expect_error([&] { read(); }, {"2 frames"});
 }
 
+TEST_F(VolumeDicom, EchoesAndTypesAreNeverMixed) {
+    const auto put_typed = [&](const std::string& name, int k, int number, const char* type, std::int16_t value) {
+        DicomSet d = dicom_slice_set(s, k);
+        d.text(0x00080008, "CS", type).text(0x00200013, "IS", std::to_string(number)).text(0x00080018, "UI", "1.2.3." + name);
+        if (value != 0) d.raw(0x7fe00010, "OW", bytes_of(std::vector<std::int16_t>(20, value)));
+        write(folder / ("series/" + name), dicom_file(d));
+    };
+    for (int k = 0; k < s.dims[2]; ++k) { // numbers alternate: by number alone, the types would mix
+        put_typed(fmt::format("w{}", k), k, 2 * k + k % 2, "ORIGINAL\\PRIMARY\\WATER", 0);
+        put_typed(fmt::format("f{}", k), k, 2 * k + 1 - k % 2, "ORIGINAL\\PRIMARY\\FAT", 7);
+    }
+    EXPECT_TRUE(is_sample(read()));
+    EXPECT_THAT(read().notes, Contains(::testing::AllOf(HasSubstr("2 times"), HasSubstr("WATER, ORIGINAL\\PRIMARY\\FAT"))));
+    options.frame = 1;
+    EXPECT_EQ(read().data<std::int16_t>()[37], 7);
+    options.frame = 0;
+    for (const int k : {3, 4, 5, 6, 7}) std::filesystem::remove(folder / fmt::format("series/f{}", k)); // of the one at a few places only
+    EXPECT_TRUE(is_sample(read()));
+    EXPECT_THAT(read().notes, Contains(HasSubstr("3 slices of another acquisition, echo or type")));
+    std::filesystem::remove(folder / "series/w0"); // and where the other is not
+    const Voxels v = read();
+    EXPECT_EQ(v.dims[2], 7);
+    EXPECT_TRUE(std::equal(s.voxels.begin() + 20, s.voxels.end(), v.data<std::int16_t>()));
+}
+
 TEST_F(VolumeDicom, GapsAreRefusedOrInterpolated) {
     put_all();
     std::filesystem::remove(folder / "series/3.dcm");
@@ -164,6 +189,114 @@ TEST_F(VolumeDicom, SlicesOutOfStepAreRefused) {
     expect_error([&] { read(); }, {"1 of 8 slices", "out of step"});
     options.allow_gaps = true;
     EXPECT_EQ(read().dims, s.dims);
+}
+
+TEST_F(VolumeDicom, PositionsRoundedInTextAreNoGaps) {
+    struct Case {
+        double step;
+        int decimals;
+    };
+    for (const auto& [step, decimals] :
+         {Case{0.625, 2}, Case{1.25, 1}, Case{0.25, 1}, Case{0.15, 1}, Case{1.0 / 3, 2}, Case{0.4883, 2}, Case{1.25, 0}}) {
+        SCOPED_TRACE(fmt::format("{} mm, {} decimals", step, decimals));
+        s = Sample({3, 2, 120});
+        std::filesystem::remove_all(folder / "series");
+        const auto put_rounded = [&](bool with_gap) {
+            for (int k = 0; k < s.dims[2]; ++k) {
+                DicomFields f = dicom_slice(s, k);
+                f.instance = 1000 - k;
+                f.position = fmt::format("-10.5\\20.25\\{:.{}f}", -40 + step * (with_gap && k >= 60 ? k + 1 : k), decimals);
+                put(fmt::format("{}.dcm", (k * 7) % 120), f);
+            }
+        };
+        put_rounded(false);
+        const Voxels v = read();
+        EXPECT_TRUE(is_sample(v));
+        EXPECT_NEAR(v.geometry.spacing[2], step, std::pow(10.0, -decimals) / 119);
+        EXPECT_TRUE(v.notes.empty()) << v.notes.front();
+        EXPECT_THAT(v.decisions, Contains(HasSubstr("from the whole span")));
+        put_rounded(true);
+        if (std::pow(10.0, -decimals) > 0.5 * step) { // too coarse to count: refused as well
+            expect_error([&] { read(); }, {"distance of slices"});
+            continue;
+        }
+        expect_error([&] { read(); }, {"1 of 121 slices are missing", fmt::format("{:.2f} mm from the lowest", 60 * step).substr(0, 2)});
+    }
+}
+
+TEST_F(VolumeDicom, SlicesThatRoundingPutsAtOnePlaceAreRefused) {
+    for (int k = 0; k < s.dims[2]; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.position = fmt::format("0\\0\\{:.0f}", 0.6 * k);
+        put(fmt::format("{}.dcm", k), f);
+    }
+    expect_error([&] { read(); }, {"rounded to 1 mm"});
+}
+
+TEST_F(VolumeDicom, ASliceBetweenTheOthersIsNotDroppedInSilence) {
+    put_all();
+    DicomFields f = dicom_slice(s, 3);
+    const Double3 at = s.geometry.to_world({0, 0, 3.05});
+    f.position = fmt::format("{}\\{}\\{}", at[0], at[1], at[2]);
+    f.instance_uid = "1.2.3.99", f.instance = 99;
+    put("between.dcm", f);
+    expect_error([&] { read(); }, {"1 slice lies between"});
+    options.allow_gaps = true;
+    EXPECT_EQ(read().dims, s.dims);
+}
+
+TEST_F(VolumeDicom, OneSOPInstanceUIDInAllFilesIsNoCopy) {
+    for (int k = 0; k < s.dims[2]; ++k) {
+        DicomFields f = dicom_slice(s, k);
+        f.instance_uid = "1.2.3";
+        put(fmt::format("{}.dcm", k), f);
+    }
+    EXPECT_TRUE(is_sample(read()));
+    EXPECT_TRUE(read().notes.empty());
+    for (int k = 0; k < s.dims[2]; ++k) { // a second time, with the same UID too
+        DicomFields f = dicom_slice(s, k);
+        f.instance_uid = "1.2.3", f.acquisition = 2;
+        std::fill(f.pixels.begin(), f.pixels.end(), '\1');
+        put(fmt::format("t{}.dcm", k), f);
+    }
+    EXPECT_TRUE(is_sample(read()));
+    options.frame = 1;
+    EXPECT_EQ(read().data<std::int16_t>()[0], 0x0101);
+}
+
+TEST_F(VolumeDicom, ALargeScoutIsNotTheVolume) {
+    put_all();
+    for (const int slices : {1, 3}) {
+        Sample scout({300, 200, slices});
+        for (int k = 0; k < slices; ++k) {
+            DicomFields f = dicom_slice(scout, k);
+            f.series = "0.9", f.instance_uid = fmt::format("0.9.{}", k);
+            put(fmt::format("scout{}.dcm", k), f);
+        }
+        const Voxels v = read();
+        EXPECT_TRUE(is_sample(v));
+        EXPECT_THAT(v.notes, Contains(::testing::AllOf(HasSubstr("most slices"), HasSubstr("0.9"), HasSubstr("300 x 200"))));
+    }
+    // A longer series that makes no volume does not win, but is listed with the reason.
+    Sample other({5, 4, 12});
+    for (const int k : {0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 11}) {
+        DicomFields f = dicom_slice(other, k);
+        f.series = "0.8", f.instance_uid = fmt::format("0.8.{}", k);
+        put(fmt::format("gap{}.dcm", k), f);
+    }
+    const Voxels v = read();
+    EXPECT_TRUE(is_sample(v));
+    EXPECT_THAT(v.notes, Contains(HasSubstr("no volume: 1 of 12 slices are missing")));
+}
+
+TEST_F(VolumeDicom, AGapBesideAScoutIsStillAGap) {
+    put_all();
+    std::filesystem::remove(folder / "series/3.dcm");
+    Sample scout({300, 200, 1});
+    DicomFields f = dicom_slice(scout, 0);
+    f.series = "0.9", f.instance_uid = "0.9.1";
+    put("scout.dcm", f);
+    expect_error([&] { read(); }, {"1 of 8 slices are missing"});
 }
 
 TEST_F(VolumeDicom, ATiltedGantryKeepsAShearedVolume) {
@@ -204,7 +337,12 @@ TEST_F(VolumeDicom, WhatIsNoSliceIsNotedAndAloneRefused) {
     alone([](DicomFields& f) { f.photometric = "RGB", f.samples = 3; }, {"colours", "RGB"});
     alone([](DicomFields& f) { f.photometric = "PALETTE COLOR"; }, {"PALETTE"});
     alone([](DicomFields& f) { f.modality = "SEG"; }, {"label map"});
-    alone([](DicomFields& f) { f.frames = "12"; }, {"12 frames", "dcm2niix"});
+    alone(
+        [](DicomFields& f) {
+            f.frames = "2";
+            f.pixels += f.pixels;
+        },
+        {"2 frames", "where each of them lies"});
     alone([](DicomFields& f) { f.position.clear(); }, {"ImagePositionPatient"});
     alone([](DicomFields& f) { f.orientation = "1\\0\\0\\1\\0\\0"; }, {"ImageOrientationPatient"});
     alone([](DicomFields& f) { f.orientation = "1\\0\\0\\0\\nan\\0"; }, {"ImageOrientationPatient"});

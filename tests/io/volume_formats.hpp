@@ -1,6 +1,13 @@
 // Every container that clvr reads, written from one sample: what the suites over all formats run on.
 #pragma once
 #include "host/io/volume/volume_file.hpp"
+#include "tests/io/dicom_writers.hpp"
+#include "tests/io/hdf5_writers.hpp"
+#include "tests/io/mgh_writers.hpp"
+#include "tests/io/mrc_writers.hpp"
+#include "tests/io/numpy_writers.hpp"
+#include "tests/io/text_header_writers.hpp"
+#include "tests/io/tiff_writers.hpp"
 #include "tests/io/volume_writers.hpp"
 
 #include <ostream>
@@ -15,7 +22,7 @@ struct Written {
 struct VolumeFormat {
     const char* name;
     Written (*write)(const Folder& to, const Sample& s);
-    enum Keeps { geometry, spacing_and_origin, no_geometry } keeps = geometry;
+    enum Keeps { geometry, spacing_and_origin, spacing_only, no_geometry } keeps = geometry;
     bool checksum = false; ///< a flipped bit among the voxels is found
     int spare = 1;         ///< how many bytes at the end must be cut to lose something
     int step = 1;          ///< the slow suite damages one byte of so many: a reader that starts a process takes long
@@ -32,10 +39,14 @@ inline Written two(const std::string& header_path, const std::string& header, co
     write(data_path, data);
     return {header_path, data_path};
 }
-inline std::string text_of(const Sample& s) {
-    std::string text;
-    for (const auto v : s.voxels) text += fmt::format("{}\n", v);
-    return text;
+inline std::string text_of(const Sample& s) { return text_of(s.voxels); }
+/// One .vti; `spare` of its format must be that of its mode.
+template <VtiFields::Mode mode, VtiFields::Compressor compressor, bool big>
+Written vti_file(const Folder& to, const Sample& s) {
+    VtiFields f;
+    f.mode = mode, f.compressor = compressor, f.big = f.wide_header = big;
+    if (big) f.first = {2, -1, 5};
+    return single(to / "a.vti", vti(s, f));
 }
 inline Written dicom_folder(const Folder& to, const Sample& s, bool rle) {
     for (int k = 0; k < s.dims[2]; ++k) {
@@ -57,6 +68,7 @@ inline const std::vector<VolumeFormat>& volume_formats() {
         for (auto& p : pages) p.compression = compression, p.tile = tile;
         return tiff(pages);
     };
+    static const int vti_spare = static_cast<int>(std::string(vti_tail).size()) + 1;
     static const std::vector<VolumeFormat> formats{
         {"nifti", [](const Folder& to, const Sample& s) { return single(to / "a.nii", nifti(s)); }},
         {"nifti_gzip", [](const Folder& to, const Sample& s) { return single(to / "a.nii.gz", deflated(nifti(s))); },
@@ -83,6 +95,28 @@ inline const std::vector<VolumeFormat>& volume_formats() {
          }},
         {"nrrd_text", [](const Folder& to, const Sample& s) { return single(to / "a.nrrd", nrrd_header(s, "ascii") + "\n" + text_of(s)); },
          VolumeFormat::geometry, false, 8},
+        {"nrrd_bzip2",
+         [](const Folder& to, const Sample& s) { return single(to / "a.nrrd", nrrd_header(s, "bzip2") + "\n" + bzip2ed(little(s))); }},
+        {"nrrd_hex",
+         [](const Folder& to, const Sample& s) { return single(to / "a.nrrd", nrrd_header(s, "hex") + "\n" + hexed(little(s))); },
+         VolumeFormat::geometry, false, 2},
+        {"nrrd_list",
+         [](const Folder& to, const Sample& s) {
+             const auto names = write_slices(to, s, "s{:02}.raw");
+             write(to / "a.nhdr", nrrd_header(s, "raw", "data file: LIST\n" + lines_of(names)));
+             return Written{to / "a.nhdr", to / names.back()};
+         }},
+        {"metaimage_text",
+         [](const Folder& to, const Sample& s) {
+             return single(to / "a.mha", replaced(metaimage_header(s, ""), "BinaryData = True", "BinaryData = False") + text_of(s));
+         },
+         VolumeFormat::geometry, false, 8},
+        {"metaimage_list",
+         [](const Folder& to, const Sample& s) {
+             const auto names = write_slices(to, s, "s{:02}.raw");
+             write(to / "a.mhd", metaimage_header(s, "", "LIST") + lines_of(names));
+             return Written{to / "a.mhd", to / names.front()};
+         }},
         {"metaimage", [](const Folder& to, const Sample& s) { return single(to / "a.mha", metaimage_header(s, "") + little(s)); }},
         {"metaimage_zlib",
          [](const Folder& to, const Sample& s) {
@@ -97,10 +131,37 @@ inline const std::vector<VolumeFormat>& volume_formats() {
          VolumeFormat::spacing_and_origin},
         {"vtk_text", [](const Folder& to, const Sample& s) { return single(to / "a.vtk", vtk_header(s, "ASCII") + text_of(s)); },
          VolumeFormat::spacing_and_origin, false, 8},
+        {"vti_text", vti_file<VtiFields::ascii, VtiFields::none, false>},
+        {"vti_base64", vti_file<VtiFields::binary, VtiFields::none, false>},
+        {"vti_base64_zlib", vti_file<VtiFields::binary, VtiFields::zlib, true>},
+        {"vti_raw", vti_file<VtiFields::appended_raw, VtiFields::none, true>, VolumeFormat::geometry, false, vti_spare},
+        {"vti_raw_lz4", vti_file<VtiFields::appended_raw, VtiFields::lz4, false>, VolumeFormat::geometry, false, vti_spare},
+        {"vti_appended_base64", vti_file<VtiFields::appended_base64, VtiFields::none, false>, VolumeFormat::geometry, false, vti_spare + 2},
+        {"vti_appended_base64_zlib", vti_file<VtiFields::appended_base64, VtiFields::zlib, false>, VolumeFormat::geometry, false,
+         vti_spare + 2},
         {"tiff", [](const Folder& to, const Sample& s) { return single(to / "a.tif", tiff(tiff_pages(s))); }, VolumeFormat::no_geometry},
         {"tiff_deflate", [](const Folder& to, const Sample& s) { return single(to / "a.tif", packed_tiff(s, 8, 0)); },
          VolumeFormat::no_geometry},
         {"tiff_tiles", [](const Folder& to, const Sample& s) { return single(to / "a.tif", packed_tiff(s, 1, 16)); },
+         VolumeFormat::no_geometry},
+        {"tiff_ome",
+         [](const Folder& to, const Sample& s) {
+             const Double3 mm = s.geometry.spacing;
+             const std::string sizes = fmt::format(
+                 R"(SizeX="{}" SizeY="{}" SizeC="1" SizeZ="{}" SizeT="1" DimensionOrder="XYZCT" PhysicalSizeX="{}" PhysicalSizeY="{}" PhysicalSizeZ="{}")",
+                 s.dims[0], s.dims[1], s.dims[2], 1000 * mm[0], 1000 * mm[1], 1000 * mm[2]);
+             auto pages = tiff_pages(s);
+             pages[0].description = ome_xml(sizes);
+             return single(to / "a.ome.tif", tiff(pages));
+         },
+         VolumeFormat::spacing_only},
+        {"tiff_imagej_one_directory",
+         [](const Folder& to, const Sample& s) {
+             return single(to / "a.tif", one_directory(s.dims, s.voxels,
+                                                       fmt::format("ImageJ=1.53t\nimages={}\nslices={}\n", s.dims[2], s.dims[2]), true));
+         },
+         VolumeFormat::no_geometry},
+        {"tiff_image_depth", [](const Folder& to, const Sample& s) { return single(to / "a.tif", deep_tiff(s.dims, s.voxels)); },
          VolumeFormat::no_geometry},
         {"tiff_folder",
          [](const Folder& to, const Sample& s) {
@@ -111,7 +172,53 @@ inline const std::vector<VolumeFormat>& volume_formats() {
          },
          VolumeFormat::no_geometry},
         {"dicom", [](const Folder& to, const Sample& s) { return dicom_folder(to, s, false); }},
+        {"dicom_enhanced",
+         [](const Folder& to, const Sample& s) { return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)))); },
+         VolumeFormat::geometry, false, 1, 5},
+        {"dicom_enhanced_implicit",
+         [](const Folder& to, const Sample& s) {
+             return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)), DicomSyntax{true}, true));
+         },
+         VolumeFormat::geometry, false, 1, 5},
+        {"dicom_enhanced_deflated",
+         [](const Folder& to, const Sample& s) {
+             return single(to / "a.dcm", dicom_file(enhanced_set(s, all_frames(s)), DicomSyntax{false, false, true}));
+         },
+         VolumeFormat::geometry, false, 1, 5},
+        {"dicom_mosaic", [](const Folder& to, const Sample& s) { return single(to / "a.ima", dicom_file(mosaic_set(s))); },
+         VolumeFormat::geometry, false, 1, 5},
         {"dicom_rle", [](const Folder& to, const Sample& s) { return dicom_folder(to, s, true); }, VolumeFormat::geometry, false, 1, 7},
+        {"numpy", [](const Folder& to, const Sample& s) { return single(to / "a.npy", numpy(s)); }, VolumeFormat::no_geometry},
+        {"numpy_gzip", [](const Folder& to, const Sample& s) { return single(to / "a.npy.gz", deflated(numpy(s))); },
+         VolumeFormat::no_geometry, true},
+        {"mrc", [](const Folder& to, const Sample& s) { return single(to / "a.mrc", mrc(s)); }, VolumeFormat::spacing_and_origin},
+        {"mrc_big_endian",
+         [](const Folder& to, const Sample& s) {
+             MrcFields f;
+             f.big = true, f.extended_bytes = 80;
+             return single(to / "a.map", mrc(s, f));
+         },
+         VolumeFormat::spacing_and_origin},
+        {"mgh", [](const Folder& to, const Sample& s) { return single(to / "a.mgh", mgh(s)); }},
+        {"mgz", [](const Folder& to, const Sample& s) { return single(to / "a.mgz", deflated(mgh(s))); }, VolumeFormat::geometry, true},
+        {"hdf5",
+         [](const Folder& to, const Sample& s) {
+             write_hdf5(to / "a.h5", s, false);
+             return Written{to / "a.h5:/volume", to / "a.h5"};
+         },
+         VolumeFormat::no_geometry, false, 1, 17},
+        {"hdf5_gzip",
+         [](const Folder& to, const Sample& s) {
+             write_hdf5(to / "a.h5", s, true);
+             return Written{to / "a.h5", to / "a.h5"};
+         },
+         VolumeFormat::no_geometry, false, 1, 17},
+        {"imaris",
+         [](const Folder& to, const Sample& s) {
+             write_imaris(to / "a.ims", s);
+             return Written{to / "a.ims", to / "a.ims"};
+         },
+         VolumeFormat::spacing_and_origin, false, 1, 37},
         {"raw",
          [](const Folder& to, const Sample& s) {
              write(to / (raw_name(s) + ".json"), sidecar);

@@ -22,6 +22,18 @@ TEST(VolumeRaw, TakesTheNamesOfTheOpenSciVisDatasets) {
     EXPECT_EQ(read_volume(write(folder / "x_3x2x1_float64.raw", std::string(48, '\1'))).type, VoxelType::f32);
 }
 
+TEST(VolumeRaw, NamesMayHoldBlanksSignsAndCapitals) {
+    const Folder folder;
+    const Sample s;
+    for (const char* name : {"My scan 50%_5x4x3_int16.raw", "SCAN_5X4X3_INT16.RAW", "%d_5x4x3_Int16.Raw"})
+        EXPECT_EQ(read_volume(write(folder / name, bytes_of(s.voxels))).dims, s.dims) << name;
+    EXPECT_EQ(read_volume(write(folder / "A_5x4x3_int16.RAW.GZ", deflated(bytes_of(s.voxels)))).dims, s.dims);
+    write(folder / "B 7%.json", R"({"dims": [5, 4, 3], "type": "int16"})");
+    EXPECT_EQ(read_volume(write(folder / "B 7%.RAW", bytes_of(s.voxels))).dims, s.dims);
+    EXPECT_EQ(read_volume(write(folder / "B 7%.RAW.GZ", deflated(bytes_of(s.voxels)))).dims, s.dims);
+    EXPECT_EQ(read_volume(write(folder / "h_3x2x1_float16.raw", std::string("\0\x3c\0\xc1\0\0\0\0\0\0\0\0", 12))).data<float>()[1], -2.5f);
+}
+
 TEST(VolumeRaw, OtherNamesSayNothing) {
     const Folder folder;
     for (const char* name : {"a.raw", "_.raw", "5x4x3_int16.raw", "a_5x4_int16.raw", "a_5x4x3x2_int16.raw", "a_5x4xz_int16.raw",

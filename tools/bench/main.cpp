@@ -1,6 +1,10 @@
 // The `clvr-bench` program: measures every device on clvr's real stages, tunes, recommends, remembers.
+#include "host/cli/described/help.hpp"
+#include "host/cli/described/share_files.hpp"
+#include "host/cli/described/single_values.hpp"
 #include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/json_text.hpp"
 #include "runtime/remembered.hpp"
 #include "runtime/select.hpp"
 #include "tools/bench/bench.hpp"
@@ -20,7 +24,7 @@ namespace clvr::bench {
 namespace {
 
 struct Options {
-    std::string selector, json, html;
+    std::string selector, json, html, from;
     std::vector<std::string> stages;
     bool quick = false, tune = false, save = false, explain = false, child = false, hashes = false, tiny = false;
 };
@@ -83,9 +87,27 @@ void bench_devices(const Options& o) {
     const auto write = [](const std::string& file, const std::string& text) {
         if (!file.empty()) write_atomically(file, text.data(), text.size());
     };
-    write(o.json, report_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    write(o.json, json_text(report_json(report)));
     write(o.html, report_html(report));
     if (o.save) save(report, all);
+}
+
+std::vector<std::string> stage_names() {
+    std::vector<std::string> names;
+    for (const Stage& stage : stages()) names.push_back(stage.name);
+    return names;
+}
+
+/// The page of an earlier run's numbers, without measuring.
+void make_page_again(const Options& o) {
+    if (o.html.empty()) throw Error(ErrorKind::usage, "needs --html, the page to write", "--from");
+    const std::string text = read_text(o.from);
+    try {
+        const std::string html = report_html(report_from_json(nlohmann::json::parse(text)));
+        write_atomically(o.html, html.data(), html.size());
+    } catch (const nlohmann::json::exception&) {
+        throw Error(ErrorKind::input, "is not what clvr-bench --json writes", o.from);
+    }
 }
 
 int fail(const std::string& what, ErrorKind kind) {
@@ -96,24 +118,36 @@ int fail(const std::string& what, ErrorKind kind) {
 
 int run(int argc, char** argv) {
     Options o;
-    CLI::App app("clvr-bench measures every OpenCL device on clvr's real stages, checks its results, tunes, recommends and remembers.");
+    CLI::App app("Measures every OpenCL device on clvr's real stages, checks its results, tunes, recommends and remembers");
     app.name("clvr-bench");
-    app.set_version_flag("--version", CLVR_VERSION);
+    app.set_help_flag("-h,--help", "Print this help and exit");
+    app.set_version_flag("--version", CLVR_VERSION, "Print the version and exit");
+    add_share_options(app, CLVR_VERSION, {{"SEL", {"cpu", "gpu"}}, {"STAGE", stage_names()}});
+    app.footer("Examples:\n"
+               "  clvr-bench\n"
+               "  clvr-bench --tune --quick\n"
+               "  clvr-bench --html bench.html --json bench.json\n"
+               "  clvr-bench --save --explain\n");
+    app.add_option("--json", o.json, "Write all numbers as JSON")->type_name("FILE")->group("Output");
+    app.add_option("--html", o.html, "Write a page with tables, bars and rooflines")->type_name("FILE")->group("Output");
+    app.add_option("--from", o.from, "Measure nothing: make the page of --html from what --json wrote")->type_name("FILE")->group("Output");
+    app.add_flag("--save", o.save, "Remember the recommended devices for the next runs of clvr")->group("Output");
+    app.add_flag("--explain", o.explain, "Print the evidence for what is recommended")->group("Output");
     app.add_option("--device", o.selector,
                    "Only this: an index, cpu, gpu, part of a name, cpu/2, several joined by +; every device otherwise")
-        ->type_name("SEL");
+        ->type_name("SEL")
+        ->group("Measuring");
     app.add_option("--stage", o.stages, "Only this stage, as the table names it; may be given again")
-        ->type_name("NAME")
-        ->allow_extra_args(false);
-    app.add_flag("--quick", o.quick, "Shorter measurements, and a tuning within a minute of what matters most");
-    app.add_flag("--tune", o.tune, "Find the fastest tunables of each device (at most 5 minutes each) and keep them for all commands");
-    app.add_flag("--save", o.save, "Remember the recommended devices for the next runs of clvr");
-    app.add_flag("--explain", o.explain, "Print the evidence for what is recommended");
-    app.add_option("--json", o.json, "Write all numbers as JSON")->type_name("FILE");
-    app.add_option("--html", o.html, "Write a page with tables, bars and rooflines")->type_name("FILE");
+        ->type_name("STAGE")
+        ->group("Measuring");
+    app.add_flag("--quick", o.quick, "Shorter measurements, and a tuning within a minute of what matters most")->group("Measuring");
+    app.add_flag("--tune", o.tune, "Find the fastest tunables of each device (at most 5 minutes each) and keep them for all commands")
+        ->group("Measuring");
     app.add_flag("--child", o.child, "Serve requests on stdin (for clvr-bench itself)")->group("");
     app.add_flag("--tiny", o.tiny, "The sizes of simulators on every device (for tests)")->group("");
     app.add_flag("--hashes", o.hashes, "Print the hash of each result")->group("");
+    take_single_values(app);
+    use_help_text(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -123,6 +157,10 @@ int run(int argc, char** argv) {
         return fail(what + " (see clvr-bench --help)", ErrorKind::usage);
     }
     if (o.child) return serve();
+    if (!o.from.empty()) {
+        make_page_again(o);
+        return 0;
+    }
     bench_devices(o);
     return 0;
 }

@@ -27,6 +27,27 @@ nlohmann::json to_json(const DeviceRows& d) {
             {"rows", rows}};
 }
 
+DeviceRows device_from_json(const nlohmann::json& j) {
+    DeviceRows d;
+    for (const auto& [name, to] : {std::pair("name", &d.facts.name),
+                                   {"platform", &d.facts.platform},
+                                   {"platform_version", &d.facts.platform_version},
+                                   {"driver_version", &d.facts.driver_version},
+                                   {"tuning", &d.tuning}})
+        *to = j.at(name).get<std::string>();
+    for (const auto& [name, to] :
+         {std::pair("index", &d.facts.index), {"sub_device", &d.facts.sub_device}, {"sub_devices", &d.facts.sub_devices}})
+        *to = j.at(name).get<int>();
+    d.facts.simulator = j.at("simulator");
+    d.facts.compute_units = j.at("compute_units");
+    d.facts.native_float_width = j.at("native_float_width");
+    const std::string type = j.at("type");
+    for (const DeviceType t : {DeviceType::cpu, DeviceType::gpu, DeviceType::accelerator})
+        if (type == type_name(t)) d.facts.type = t;
+    for (const auto& row : j.at("rows")) d.rows.push_back(row_from_json(row));
+    return d;
+}
+
 } // namespace
 
 std::string time_text(double seconds) {
@@ -77,6 +98,41 @@ nlohmann::json report_json(const Report& report) {
         recommendations[r.task] = {{"devices", indices(r.devices)}, {"reason", r.reason}, {"evidence", r.evidence}};
     return {
         {"clvr", CLVR_VERSION}, {"quick", report.quick}, {"devices", devices}, {"joined", joined}, {"recommendations", recommendations}};
+}
+
+Report report_from_json(const nlohmann::json& json) {
+    Report report;
+    report.quick = json.at("quick");
+    for (const auto& j : json.at("devices")) {
+        if (j.contains("tuned")) {
+            TunedDevice& tuned = report.tuned[report.devices.size()];
+            const auto& from = j.at("tuned");
+            from.at("tunables").get_to(tuned.tuning.values);
+            from.at("evidence").get_to(tuned.tuning.evidence);
+            from.at("tried").get_to(tuned.tried);
+            from.at("refused").get_to(tuned.refused);
+            from.at("left_out").get_to(tuned.left_out);
+        }
+        report.devices.push_back(device_from_json(j));
+    }
+    const auto positions = [&](const nlohmann::json& indices) {
+        std::vector<std::size_t> found;
+        for (const int index : indices.get<std::vector<int>>())
+            for (std::size_t p = 0; p < report.devices.size(); ++p)
+                if (report.devices[p].facts.index == index) {
+                    found.push_back(p);
+                    break;
+                }
+        return found;
+    };
+    for (const auto& j : json.at("joined")) report.joined.push_back({positions(j.at("devices")), row_from_json(j.at("row"))});
+    for (const std::string& task : task_names()) {
+        const auto& j = json.at("recommendations");
+        if (!j.contains(task)) continue;
+        report.recommendations.push_back({task, positions(j.at(task).at("devices")), j.at(task).at("reason").get<std::string>(),
+                                          j.at(task).at("evidence").get<std::vector<std::string>>()});
+    }
+    return report;
 }
 
 } // namespace clvr::bench

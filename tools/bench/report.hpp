@@ -25,6 +25,8 @@ std::string time_text(double seconds);
 std::string table_text(const DeviceRows& device);
 
 nlohmann::json report_json(const Report& report);
+/// What report_json() wrote, with those facts of the devices that it holds. Throws nlohmann::json::exception for what is none.
+Report report_from_json(const nlohmann::json& json);
 
 /// One page that needs nothing beside it: tables, bars per stage, a roofline of each device.
 std::string report_html(const Report& report);

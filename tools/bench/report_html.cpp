@@ -27,6 +27,13 @@ std::string label(const DeviceRows& d) {
                        d.facts.sub_devices ? fmt::format(" {}/{}", d.facts.sub_device + 1, d.facts.sub_devices) : "");
 }
 
+/// Three digits that count, without an exponent.
+std::string number_text(double v) {
+    if (v < 999.5) return fmt::format("{:.3g}", v);
+    const double unit = std::pow(10, std::floor(std::log10(v)) - 2);
+    return fmt::format("{:.0f}", std::round(v / unit) * unit);
+}
+
 std::string table(const DeviceRows& d) {
     std::string html =
         "<table><tr><th>stage</th><th>time</th><th>spread</th><th>rate</th><th></th><th>of native</th><th>of ceiling</th><th "
@@ -42,7 +49,7 @@ std::string table(const DeviceRows& d) {
                         "class=\"said\">{}</td></tr>\n",
                         r.status == Status::wrong_result || r.status == Status::error ? " class=\"bad\"" : "", escaped(r.stage),
                         known ? time_text(r.seconds) : "", known && r.batches > 2 ? fmt::format("{:.1f} %", 100 * r.spread) : "",
-                        known ? fmt::format("{:.3g}", r.rate) : "", known ? escaped(r.unit) : "", percent(known ? r.native_share : 0),
+                        known ? number_text(r.rate) : "", known ? escaped(r.unit) : "", percent(known ? r.native_share : 0),
                         percent(known ? r.share : 0), escaped(said));
     }
     return html + "</table>\n";
@@ -66,12 +73,39 @@ std::string bars(const Report& report, const Stage& stage) {
         inner += fmt::format(
             "<rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"{}\"/><text class=\"small\" x=\"{:.1f}\" y=\"{}\">{}</text>\n",
             left, y + 2, width, height - 4, colours[i % std::size(colours)], left + width + 5, y + 13,
-            r ? fmt::format("{:.3g} {}", r->rate, escaped(r->unit)) : "no result");
+            r ? number_text(r->rate) + " " + escaped(r->unit) : "no result");
         y += height;
     }
     return fmt::format("<svg viewBox=\"0 0 520 {0}\" width=\"520\" height=\"{0}\" role=\"img\"><text x=\"{1}\" y=\"13\" "
                        "text-anchor=\"end\">{2}</text>\n{3}</svg>\n",
                        y, left - 8, escaped(stage.name), inner);
+}
+
+/// What a single device reaches of its own ceilings: those as numbers, and a bar for each stage that is held against one.
+std::string ceilings(const DeviceRows& d) {
+    std::string known;
+    for (const char* stage : {"FMA rate", "copy", "triad"})
+        if (const Row* r = d.ok_row(stage))
+            known += fmt::format("{}{} {} {}", known.empty() ? "" : ", ", stage, number_text(r->rate), escaped(r->unit));
+    constexpr int height = 20, left = 130, full = 400;
+    std::string inner;
+    int y = 0;
+    for (const Row& r : d.rows) {
+        if (r.status != Status::ok || !(r.share > 0)) continue;
+        const Ceiling ceiling = stage_named(r.stage).ceiling;
+        inner += fmt::format(
+            "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" "
+            "fill=\"#e4e4e4\"/><rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"{}\"/><text class=\"small\" x=\"{}\" "
+            "y=\"{}\">{:.0f} % of {}: {} {}</text>\n",
+            left - 8, y + 14, escaped(r.stage), left, y + 3, full, height - 6, left, y + 3, std::max(1.0, full * std::min(r.share, 1.0)),
+            height - 6, colours[0], left + full + 8, y + 14, 100 * r.share, ceiling == Ceiling::arithmetic ? "FMA rate" : "bandwidth",
+            number_text(r.rate), escaped(r.unit));
+        y += height;
+    }
+    if (inner.empty()) return "";
+    return fmt::format(
+        "<p class=\"notes\">{0}: {1}.</p>\n<svg viewBox=\"0 0 780 {2}\" width=\"780\" height=\"{2}\" role=\"img\">\n{3}</svg>\n",
+        escaped(label(d)), known, y, inner);
 }
 
 std::string legend(const Report& report) {
@@ -82,6 +116,46 @@ std::string legend(const Report& report) {
                                 escaped(label(report.devices[i])));
     return fmt::format("<p class=\"notes\">{}</p>\n", html);
 }
+
+/// A rectangle on the picture.
+struct Box {
+    double x0, y0, x1, y1;
+    bool meets(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
+};
+
+/// Finds each label a place where nothing else stands.
+class Labels {
+public:
+    /// Labels stay inside `picture`.
+    explicit Labels(const Box& picture) : picture_(picture) {}
+    void keep_free(const Box& box) { taken_.push_back(box); }
+    /// Text for the mark at (x, y): beside it or, step by step, farther below and above; then with a line to it.
+    std::string place(const std::string& text, double x, double y) {
+        const double width = 6.8 * static_cast<double>(text.size());
+        constexpr double height = 14, gap = 9;
+        for (int step = 0; step < 40; ++step)
+            for (const double sign : {1.0, -1.0})
+                for (const bool right : {true, false}) {
+                    const double middle = y + sign * (step == 0 ? 0 : 4 + 8 * step);
+                    const double from = right ? x + gap : x - gap - width;
+                    const Box box{from, middle - height / 2, from + width, middle + height / 2};
+                    if (!inside(box) || std::any_of(taken_.begin(), taken_.end(), [&](const Box& t) { return t.meets(box); })) continue;
+                    taken_.push_back(box);
+                    std::string svg;
+                    if (step > 1)
+                        svg = fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"#aaa\"/>", x, y,
+                                          right ? from - 2 : from + width + 2, middle);
+                    return svg + fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", right ? from : from + width,
+                                             middle + 4, right ? "start" : "end", escaped(text));
+                }
+        return ""; // a picture that is full
+    }
+
+private:
+    bool inside(const Box& b) const { return b.x0 >= picture_.x0 && b.x1 <= picture_.x1 && b.y0 >= picture_.y0 && b.y1 <= picture_.y1; }
+    Box picture_;
+    std::vector<Box> taken_;
+};
 
 } // namespace
 
@@ -119,19 +193,26 @@ std::string roofline_svg(const DeviceRows& d) {
     svg +=
         fmt::format("<polyline fill=\"none\" stroke=\"#444\" stroke-width=\"2\" points=\"{:.1f},{:.1f} {:.1f},{:.1f} {:.1f},{:.1f}\"/>\n",
                     x(start_x), y(start_y), x(ridge), y(peak), x(end), y(peak));
-    svg += fmt::format("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">FMA rate {:.3g} GFLOP/s</text>\n", right,
-                       y(peak) - 6, peak * 1e-9);
-    svg +=
-        fmt::format("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\">{:.3g} GB/s</text>\n", x(start_x) + 6, y(start_y) - 14, bytes * 1e-9);
+    svg += fmt::format("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">FMA rate {} GFLOP/s</text>\n", right,
+                       y(peak) - 6, number_text(peak * 1e-9));
+    svg += fmt::format("<text class=\"small\" x=\"{:.1f}\" y=\"{:.1f}\">{} GB/s</text>\n", x(start_x) + 24,
+                       std::min(y(start_y) + 2, bottom - 4), number_text(bytes * 1e-9));
+    Labels labels({left + 2, top, 618, bottom - 2});
+    labels.keep_free({right - 170, y(peak) - 20, right, y(peak) + 2});                      // "FMA rate ..."
+    labels.keep_free({x(start_x) + 20, y(start_y) - 12, x(start_x) + 100, y(start_y) + 6}); // "... GB/s"
+    for (const Row* r : points) labels.keep_free({x(r->intensity) - 6, y(r->flops) - 6, x(r->intensity) + 6, y(r->flops) + 6});
+    std::string marks, texts;
     int k = 0;
     for (const Row* r : points) {
         const double roof = std::min(peak, bytes * r->intensity);
         const char* colour = colours[k++ % static_cast<int>(std::size(colours))];
-        svg += fmt::format(
+        marks += fmt::format(
             "<circle cx=\"{0:.1f}\" cy=\"{1:.1f}\" r=\"5\" fill=\"{2}\"/><line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{3:.1f}\" "
-            "stroke=\"{2}\" stroke-dasharray=\"2 3\"/><text x=\"{4:.1f}\" y=\"{5:.1f}\">{6} {7:.0f} %</text>\n",
-            x(r->intensity), y(r->flops), colour, y(roof), x(r->intensity) + 9, y(r->flops) + 14, escaped(r->stage), 100 * r->flops / roof);
+            "stroke=\"{2}\" stroke-dasharray=\"2 3\"/>\n",
+            x(r->intensity), y(r->flops), colour, y(roof));
+        texts += labels.place(fmt::format("{} {:.0f} %", r->stage, 100 * r->flops / roof), x(r->intensity), y(r->flops));
     }
+    svg += marks + texts; // texts over the lines
     return svg + fmt::format("<text class=\"small\" x=\"{}\" y=\"{}\" text-anchor=\"middle\">floating-point operations a byte</text><text "
                              "class=\"small\" "
                              "x=\"12\" y=\"{}\" transform=\"rotate(-90 12 {})\" text-anchor=\"middle\">GFLOP/s</text></svg>\n",
@@ -149,9 +230,17 @@ std::string report_html(const Report& report) {
         for (const std::size_t d : r.devices) names += (names.empty() ? "" : " and ") + escaped(label(report.devices[d]));
         html += fmt::format("<div class=\"chosen\"><b>{}</b>: {}{}.</div>\n", r.task, names.empty() ? "" : names + ": ", escaped(r.reason));
     }
-    html += "<h2>Speed by stage</h2>\n" + legend(report) + "<div class=\"row\">";
-    for (const Stage& stage : stages()) html += bars(report, stage);
-    html += "</div>\n<h2>Against each device's own ceilings</h2>\n<p class=\"notes\">A stage lies below the roof that its arithmetic a "
+    std::vector<const DeviceRows*> real;
+    for (const DeviceRows& d : report.devices)
+        if (!d.facts.simulator) real.push_back(&d);
+    if (real.size() == 1)
+        html += "<h2>Share of the device's ceilings</h2>\n" + ceilings(*real.front());
+    else {
+        html += "<h2>Speed by stage</h2>\n" + legend(report) + "<div class=\"row\">";
+        for (const Stage& stage : stages()) html += bars(report, stage);
+        html += "</div>\n";
+    }
+    html += "<h2>Against each device's own roofline</h2>\n<p class=\"notes\">A stage lies below the roof that its arithmetic a "
             "byte allows; the "
             "number is its share of that.</p><div class=\"row\">";
     for (const DeviceRows& d : report.devices)

@@ -10,7 +10,7 @@ namespace {
 /// Host memory that the driver keeps in place, as a mapped buffer of its own.
 class Pinned {
 public:
-    Pinned(Device& d, std::size_t bytes) : device_(d), bytes_(bytes) {
+    Pinned(Device& d, std::size_t bytes) : device_(d) {
         cl_check("pinned memory of " + d.facts().name, [&] {
             buffer_ = cl::Buffer(d.context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
             data_ = static_cast<float*>(d.queue().enqueueMapBuffer(buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes));
@@ -31,7 +31,6 @@ private:
     Device device_;
     cl::Buffer buffer_;
     float* data_ = nullptr;
-    std::size_t bytes_;
 };
 
 enum class Way { pageable, pinned, mapped };

@@ -6,8 +6,11 @@ variants=('-DCLVR_MARCH=0'
     '-DCLVR_VOXEL=short -DCLVR_VOXEL_BITS=16 -DCLVR_VOXEL_SIGNED=1 -DCLVR_POOLS=2 -DCLVR_MARCH=1'
     '-DCLVR_VOXEL=float -DCLVR_VOXEL_BITS=32 -DCLVR_VOXEL_SIGNED=0 -DCLVR_POOLS=8 -DCLVR_MARCH=2 -DCLVR_RAYS=1')
 
+kernel_compiler=$(command -v clang-14 || command -v clang) || { echo "no clang here"; exit 1; }
+export kernel_compiler
+
 kernel_clang() { # FILE OPTION...: clang on a kernel file as OpenCL C 1.2, from within kernels/
-    clang-14 -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -I . "${@:2}" "$1"
+    "$kernel_compiler" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -I . "${@:2}" "$1"
 }
 
 # for_each_kernel ROOT [SKIPPED]: calls the shell function `check FILE DEFINE...` for every .cl file of ROOT/kernels but those whose path matches

@@ -49,9 +49,11 @@ expect refuses kernel_contraction kernels/k.cl 'k.cl:2' < <(kernel 'x[i] = x[i] 
 expect refuses kernel_contraction kernels/k.cl 'k.cl:2' < <(kernel 'v[i] = v[i + 2] - v[i] * v[i + 1];')
 expect refuses kernel_contraction kernels/probe/k.cl 'no kernel file' < <(kernel 'x[i] = x[i] * x[i + 1] + x[i + 2];') # the probe is not looked at
 
-expect accepts format runtime/a.cpp <<<'int f(int x) { return x; }'
-expect refuses format runtime/a.cpp 'clang-format-violations' <<<'int  f( int x ){return x;}'
-expect refuses format runtime/a.txt 'no C++ file' <<<'int  f( int x ){return x;}'
+if command -v clang-format-14 >/dev/null; then # else tests.cmake leaves this lint out
+    expect accepts format runtime/a.cpp <<<'int f(int x) { return x; }'
+    expect refuses format runtime/a.cpp 'clang-format-violations' <<<'int  f( int x ){return x;}'
+    expect refuses format runtime/a.txt 'no C++ file' <<<'int  f( int x ){return x;}'
+fi
 
 expect accepts layers host/io/a.hpp <<<'#include "host/frame/frame.hpp"'
 for case in 'runtime/a.cpp host/volume/voxels.hpp' 'host/volume/a.cpp host/frame/frame.hpp' 'host/render/a.hpp host/io/picture/frame_file.hpp' \
@@ -59,7 +61,7 @@ for case in 'runtime/a.cpp host/volume/voxels.hpp' 'host/volume/a.cpp host/frame
     expect refuses layers "${case% *}" "${case#* }" <<<"#include \"${case#* }\""
 done
 expect refuses layers host/cli/a.cpp 'only in runtime' <<<'#include <CL/opencl.hpp>'
-expect refuses layers host/cli/a.cpp 'only in host/io' <<<'#include <itkImageFileReader.h>'
+expect refuses layers host/cli/a.cpp 'only in host/io' <<<'#include <tiffio.h>'
 expect refuses layers host/cli/a.cpp 'steady_clock' <<<'auto now = std::chrono::system_clock::now();'
 expect refuses layers runtime/a.cpp 'knows no volume' <<<'// for every Voxel'
 

@@ -3,6 +3,7 @@
 #include "host/volume/json_fields.hpp"
 #include "runtime/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
@@ -129,13 +130,26 @@ TensorFile tensors_of(const Model& m) {
     return file;
 }
 
+std::vector<std::string> embedded_model_names() {
+    std::vector<std::pair<std::size_t, std::string>> models; // channels, name
+    for (const auto& [file, bytes] : embedded_models()) {
+        const std::string name = file.substr(0, file.rfind('.'));
+        models.emplace_back(model_of(parse_tensors(bytes, name), name).channels.size(), name);
+    }
+    std::sort(models.rbegin(), models.rend());
+    std::vector<std::string> names;
+    for (const auto& [channels, name] : models) names.push_back(name);
+    return names;
+}
+
 Model read_model(const std::string& path) {
     std::error_code failed;
-    if (path != "default" || std::filesystem::is_regular_file(path, failed)) return model_of(read_tensors(path), path);
-    const auto found = embedded_models().find("default.safetensors");
-    if (found == embedded_models().end())
+    const auto found = embedded_models().find(path + ".safetensors");
+    if (found != embedded_models().end() && !std::filesystem::is_regular_file(path, failed))
+        return model_of(parse_tensors(found->second, path), path);
+    if (path == "default" && !std::filesystem::exists(path, failed))
         throw Error(ErrorKind::usage, "is not inside this build: add --model FILE, as `clvr train` writes it", "the default model");
-    return model_of(parse_tensors(found->second, path), path);
+    return model_of(read_tensors(path), path);
 }
 void write_model(const Model& model, const std::string& path) { write_tensors(tensors_of(model), path); }
 

@@ -1,5 +1,6 @@
 #include "host/io/scene/scene_file.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/volume/dataset_path.hpp"
 #include "host/volume/json_fields.hpp"
 #include "host/volume/transfer_function_json.hpp"
 #include "runtime/error.hpp"
@@ -133,10 +134,14 @@ ClipPlane parse_clip_plane(JsonFields fields) {
 
 bool is_built_in(const std::string& volume) { return volume.rfind("demo:", 0) == 0; }
 
-/// Calls change(path) on every path of the scene that names a file.
+/// Calls change(path) on every path of the scene that names a file: of FILE:/path/of/dataset on FILE.
 template <class F>
 void for_each_path(Scene& scene, F&& change) {
-    if (!scene.volume.empty() && !is_built_in(scene.volume)) change(scene.volume);
+    if (!scene.volume.empty() && !is_built_in(scene.volume)) {
+        DatasetPath volume = split_dataset_path(scene.volume);
+        change(volume.file);
+        scene.volume = join_dataset_path(volume);
+    }
     if (!scene.light.image.empty()) change(scene.light.image);
 }
 

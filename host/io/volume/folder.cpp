@@ -34,8 +34,8 @@ FolderFiles files_in(const std::string& folder, bool recursive) {
     }
     std::sort(files.paths.begin(), files.paths.end());
     if (left_out > 0)
-        files.notes.push_back(fmt::format("{} file{} of the operating system left out ({})", left_out, left_out == 1 ? " was" : "s were",
-                                          fs::path(example).filename().string()));
+        files.notes.push_back(fmt::format("{} file{} of the operating system {} left out ({})", left_out, left_out == 1 ? "" : "s",
+                                          left_out == 1 ? "was" : "were", fs::path(example).filename().string()));
     return files;
 }
 

@@ -6,7 +6,7 @@
 
 namespace clvr {
 
-enum class VolumeFormat { unknown, nifti, nrrd, metaimage, dicom, tiff, vtk, raw };
+enum class VolumeFormat { unknown, nifti, nrrd, metaimage, dicom, tiff, png, jpeg, vtk, vti, numpy, mrc, mgh, hdf5, raw };
 
 /// By the first bytes of a file (1024 are enough): `unknown` where they are silent.
 VolumeFormat format_of_head(const std::string& head);

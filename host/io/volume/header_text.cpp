@@ -37,11 +37,19 @@ std::vector<std::int64_t> parse_integers(std::string_view text, std::size_t coun
     return integers;
 }
 
-void check_spacing(std::string_view text, std::size_t count, const char* field, const std::string& path) {
+std::vector<double> parse_finite(std::string_view text, std::size_t count, const char* field, const std::string& path) {
+    const auto values = parse_numbers(text);
+    if (!values || values->size() != count || !std::all_of(values->begin(), values->end(), [](double x) { return std::isfinite(x); }))
+        bad_file(path, "{} is \"{:.60}\": expected {} finite number{}", field, text, count, count == 1 ? "" : "s");
+    return *values;
+}
+
+std::vector<double> parse_spacing(std::string_view text, std::size_t count, const char* field, const std::string& path) {
     const auto values = parse_numbers(text);
     if (!values || values->size() != count ||
         !std::all_of(values->begin(), values->end(), [](double x) { return std::isfinite(x) && x != 0; }))
-        bad_file(path, "{} is \"{:.60}\": expected {} finite numbers other than 0", field, text, count);
+        bad_file(path, "{} is \"{:.60}\": expected {} finite number{} other than 0", field, text, count, count == 1 ? "" : "s");
+    return *values;
 }
 
 std::string_view trimmed(std::string_view s) {
@@ -56,10 +64,35 @@ std::string lower_case(std::string_view s) {
     return t;
 }
 
+namespace {
+
+/// The file, or the only one of its folder whose name differs in case alone; empty when there is none.
+std::filesystem::path file_in_any_case(const std::filesystem::path& wanted) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(wanted, error)) return wanted;
+    std::filesystem::path found;
+    const std::string name = lower_case(wanted.filename().string());
+    for (std::filesystem::directory_iterator i(wanted.parent_path().empty() ? "." : wanted.parent_path(), error), end; !error && i != end;
+         i.increment(error)) {
+        if (lower_case(i->path().filename().string()) != name || !i->is_regular_file(error)) continue;
+        if (!found.empty()) return {};
+        found = i->path();
+    }
+    return found;
+}
+
+} // namespace
+
 std::string beside(const std::string& header, const std::string& name) {
-    const std::filesystem::path p(name), full = p.is_absolute() ? p : std::filesystem::path(header).parent_path() / p;
-    if (!std::filesystem::is_regular_file(full)) bad_file(header, "its voxels are missing: there is no file {}", full.string());
-    return full.string();
+    const std::filesystem::path folder = std::filesystem::path(header).parent_path();
+    std::filesystem::path found = file_in_any_case(folder / name); // an absolute name replaces the folder
+    if (found.empty() && name.find('\\') != std::string::npos) {
+        std::string parted = name;
+        std::replace(parted.begin(), parted.end(), '\\', '/');
+        found = file_in_any_case(folder / parted);
+    }
+    if (found.empty()) bad_file(header, "its voxels are missing: there is no file {}", (folder / name).string());
+    return found.string();
 }
 
 } // namespace clvr

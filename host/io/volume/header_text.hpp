@@ -15,9 +15,12 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text);
 /// `count` whole numbers of at least `least`. Throws Error{input} naming file and field.
 std::vector<std::int64_t> parse_integers(std::string_view text, std::size_t count, std::int64_t least, const char* field,
                                          const std::string& path);
-/// Throws Error{input} unless the text holds `count` voxel sizes, all finite and not 0.
-void check_spacing(std::string_view text, std::size_t count, const char* field, const std::string& path);
-/// The path of a file that a header names, relative to the header's folder. Throws Error{input} when there is none.
+/// `count` finite numbers. Throws Error{input} naming file and field.
+std::vector<double> parse_finite(std::string_view text, std::size_t count, const char* field, const std::string& path);
+/// `count` voxel sizes, all finite and not 0. Throws Error{input} naming file and field.
+std::vector<double> parse_spacing(std::string_view text, std::size_t count, const char* field, const std::string& path);
+/// The path of a file that a header names, relative to the header's folder: by its very name, else by the only one that differs in case
+/// alone; "\\" parts folders where no file has it in its name. Throws Error{input} when there is none.
 std::string beside(const std::string& header, const std::string& name);
 
 } // namespace clvr

@@ -1,4 +1,5 @@
 // RAW volumes: bare samples, described by the file's name, a JSON sidecar or the command line.
+#include "host/io/volume/header_text.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
 
@@ -25,8 +26,8 @@ constexpr const char* how_to_describe =
 
 /// "name", "256x256x128" and "uint16" of name_256x256x128_uint16.raw or .raw.gz, the names of the Open SciVis Datasets.
 void from_name(Description& d, std::filesystem::path name) {
-    if (name.extension() == ".gz") name.replace_extension();
-    const std::string stem = name.stem().string();
+    if (lower_case(name.extension().string()) == ".gz") name.replace_extension();
+    const std::string stem = lower_case(name.stem().string());
     const auto type = stem.rfind('_'), dims = type == std::string::npos || type == 0 ? type : stem.rfind('_', type - 1);
     if (type == std::string::npos || dims == std::string::npos) return;
     FileDims size;
@@ -83,7 +84,7 @@ void from_sidecar(Description& d, const std::string& path) {
 
 std::string sidecar_of(const std::string& path) {
     std::filesystem::path p(path);
-    if (p.extension() == ".gz") p.replace_extension();
+    if (lower_case(p.extension().string()) == ".gz") p.replace_extension();
     return p.replace_extension(".json").string();
 }
 

@@ -12,6 +12,18 @@ namespace clvr {
 
 namespace {
 
+/// IEEE 754 binary16.
+struct Half {
+    std::uint16_t bits = 0;
+    explicit operator float() const {
+        const int exponent = bits >> 10 & 31, fraction = bits & 1023;
+        const float sign = bits >> 15 ? -1.0f : 1.0f;
+        if (exponent == 31) return fraction ? std::numeric_limits<float>::quiet_NaN() : sign * std::numeric_limits<float>::infinity();
+        return sign * (exponent == 0 ? std::ldexp(static_cast<float>(fraction), -24)
+                                     : std::ldexp(static_cast<float>(fraction + 1024), exponent - 25));
+    }
+};
+
 /// Calls f(T{}) with the C++ type of `t`.
 template <class F>
 decltype(auto) with_sample_type(SampleType t, F&& f) {
@@ -32,6 +44,8 @@ decltype(auto) with_sample_type(SampleType t, F&& f) {
         return f(std::uint64_t{});
     case SampleType::i64:
         return f(std::int64_t{});
+    case SampleType::f16:
+        return f(Half{});
     case SampleType::f32:
         return f(float{});
     case SampleType::f64:
@@ -60,6 +74,7 @@ std::optional<SampleType> parse_sample_type(std::string_view name) {
                                                                       {"int8_t", SampleType::i8},
                                                                       {"char", SampleType::i8},
                                                                       {"signed char", SampleType::i8},
+                                                                      {"signed_char", SampleType::i8},
                                                                       {"u16", SampleType::u16},
                                                                       {"uint16", SampleType::u16},
                                                                       {"uint16_t", SampleType::u16},
@@ -92,6 +107,7 @@ std::optional<SampleType> parse_sample_type(std::string_view name) {
                                                                       {"unsigned long long", SampleType::u64},
                                                                       {"unsigned long long int", SampleType::u64},
                                                                       {"unsigned_long", SampleType::u64},
+                                                                      {"unsigned_long_long", SampleType::u64},
                                                                       {"vtktypeuint64", SampleType::u64},
                                                                       {"i64", SampleType::i64},
                                                                       {"int64", SampleType::i64},
@@ -99,8 +115,13 @@ std::optional<SampleType> parse_sample_type(std::string_view name) {
                                                                       {"longlong", SampleType::i64},
                                                                       {"long long", SampleType::i64},
                                                                       {"long long int", SampleType::i64},
+                                                                      {"signed long long", SampleType::i64},
+                                                                      {"signed long long int", SampleType::i64},
+                                                                      {"long_long", SampleType::i64},
                                                                       {"long", SampleType::i64},
                                                                       {"vtktypeint64", SampleType::i64},
+                                                                      {"f16", SampleType::f16},
+                                                                      {"float16", SampleType::f16},
                                                                       {"f32", SampleType::f32},
                                                                       {"float32", SampleType::f32},
                                                                       {"float", SampleType::f32},
@@ -112,7 +133,7 @@ std::optional<SampleType> parse_sample_type(std::string_view name) {
 }
 
 const char* sample_type_name(SampleType t) {
-    static constexpr std::array names{"u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f32", "f64"};
+    static constexpr std::array names{"u8", "i8", "u16", "i16", "u32", "i32", "u64", "i64", "f16", "f32", "f64"};
     return names[static_cast<std::size_t>(t)];
 }
 
@@ -145,6 +166,15 @@ CheckedDims check_dims(const FileDims& dims, std::int64_t frames, SampleType typ
     }
     frame_bytes = bytes / static_cast<std::uint64_t>(frames);
     return {{static_cast<int>(dims[0]), static_cast<int>(dims[1]), static_cast<int>(dims[2])}, frame_bytes, bytes};
+}
+
+std::int64_t checked_product(const std::vector<std::int64_t>& sizes, const std::string& path) {
+    std::int64_t product = 1;
+    for (const std::int64_t n : sizes) {
+        if (n < 1 || n > std::numeric_limits<std::int32_t>::max() / product) bad_file(path, "an axis has the impossible size {}", n);
+        product *= n;
+    }
+    return product;
 }
 
 void check_frame(int frame, std::int64_t frames, const std::string& path) {
@@ -205,7 +235,7 @@ void store_samples(const void* samples, SampleType type, std::size_t n, Voxels& 
     });
 }
 
-void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v) {
+void read_samples(const ReadBytes& from, SampleType type, bool swapped, Voxels& v) {
     allocate(v);
     const std::size_t size = sample_bytes(type), count = v.count();
     const bool kept = is_kept(type);
@@ -213,7 +243,7 @@ void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v) {
     for (std::size_t first = 0; first < count; first += piece_samples) {
         const std::size_t n = std::min(piece_samples, count - first);
         unsigned char* piece = kept ? v.bytes.data() + first * size : scratch.data();
-        const std::size_t got = from.read(piece, n * size);
+        const std::size_t got = from(piece, n * size);
         if (got < n * size)
             bad_file(v.source, "expected {} bytes of voxels, found {}: the file is truncated", count * size, first * size + got);
         if (swapped) swap_samples(piece, type, n);
@@ -221,11 +251,40 @@ void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v) {
     }
 }
 
+void read_samples(ByteStream& from, SampleType type, bool swapped, Voxels& v) {
+    read_samples([&](void* to, std::size_t bytes) { return from.read(to, bytes); }, type, swapped, v);
+}
+
+SampleOrder SampleOrder::plain(const Int3& dims, std::uint64_t start) {
+    return {start, {1, static_cast<std::uint64_t>(dims[0]), static_cast<std::uint64_t>(dims[0]) * static_cast<std::uint64_t>(dims[1])}};
+}
+
+void read_reordered(const ReadBytes& from, SampleType type, bool swapped, std::uint64_t samples, const SampleOrder& order, Voxels& v) {
+    const std::size_t size = sample_bytes(type);
+    std::vector<unsigned char> all;
+    allocate_bytes(all, samples * size, v.source);
+    if (const std::size_t got = from(all.data(), all.size()); got < all.size())
+        bad_file(v.source, "expected {} bytes of voxels, found {}: the file is truncated", all.size(), got);
+    allocate(v);
+    std::vector<unsigned char> row(static_cast<std::size_t>(v.dims[0]) * size);
+    std::size_t first = 0;
+    for (std::uint64_t k = 0; k < static_cast<std::uint64_t>(v.dims[2]); ++k)
+        for (std::uint64_t j = 0; j < static_cast<std::uint64_t>(v.dims[1]); ++j, first += static_cast<std::size_t>(v.dims[0])) {
+            const unsigned char* sample = all.data() + (order.start + j * order.stride[1] + k * order.stride[2]) * size;
+            for (std::size_t at = 0; at < row.size(); at += size, sample += order.stride[0] * size)
+                std::memcpy(row.data() + at, sample, size);
+            if (swapped) swap_samples(row.data(), type, static_cast<std::size_t>(v.dims[0]));
+            store_samples(row.data(), type, static_cast<std::size_t>(v.dims[0]), v, first);
+        }
+}
+
 void describe(Voxels& v, const std::string& path, const std::string& format, SampleType type) {
     v.source = path;
     v.format = format;
     v.type = kept_type(type);
-    if (!is_kept(type))
+    if (type == SampleType::f16)
+        v.decisions.push_back("the file's f16 voxels are kept as f32, each value as it is");
+    else if (!is_kept(type))
         v.notes.push_back(fmt::format("the file's {} voxels are kept as f32 (24 bits of precision)", sample_type_name(type)));
 }
 

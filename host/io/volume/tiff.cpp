@@ -1,285 +1,255 @@
-// TIFF stacks through libtiff, whose every error is one of clvr's.
+// TIFF files of pages, and folders of TIFF slices, into Voxels.
 #include "host/io/volume/readers.hpp"
-#include "host/io/volume/samples.hpp"
+#include "host/io/volume/slice_stack.hpp"
+#include "host/io/volume/tiff_layout.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <map>
-#include <memory>
 #include <tiffio.h>
 
 namespace clvr {
 
 namespace {
 
-/// An open TIFF file that remembers what libtiff complained of last.
-class TiffFile {
+TiffSource source_of(const TiffFile& file, const std::string& path, const VolumeReadOptions& options) {
+    TiffSource source{file, path, file.pages(), "", options};
+    file.select(source.pages.front());
+    source.description = file.text(TIFFTAG_IMAGEDESCRIPTION);
+    return source;
+}
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& more) { to.insert(to.end(), more.begin(), more.end()); }
+
+/// Spacing, origin and scale of values.
+void set_geometry(Voxels& v, const TiffLayout& layout, const VolumeReadOptions& options) {
+    if (options.spacing) {
+        v.geometry.spacing = *options.spacing;
+        v.decisions.push_back("spacing from --spacing");
+    } else {
+        const ResolvedSpacing resolved = resolve_spacing(layout.scales, static_cast<std::size_t>(v.dims[2]));
+        v.geometry.spacing = resolved.spacing;
+        append(v.notes, resolved.notes);
+        append(v.decisions, resolved.decisions);
+    }
+    for (std::size_t i = 0; i < 3; ++i)
+        if (layout.origin_pixels[i] != 0) {
+            v.geometry.origin[i] = -layout.origin_pixels[i] * v.geometry.spacing[i];
+            v.decisions.push_back(fmt::format("origin {} from ImageJ: pixel {:g}", "xyz"[i], layout.origin_pixels[i]));
+        }
+    v.slope = layout.slope, v.intercept = layout.intercept;
+    check_geometry(v.geometry, v.source);
+}
+
+/// Which channel is read: a page of its own, or a sample of each pixel.
+struct ChosenChannel {
+    int plane = 0;
+    std::uint16_t sample = 0;
+};
+ChosenChannel choose_channel(const TiffLayout& layout, const TiffFile& file, const TiffForm& form, const VolumeReadOptions& options,
+                             const std::string& path, Voxels& v) {
+    std::vector<std::string> names = layout.channel_names;
+    if (form.photometric == PHOTOMETRIC_RGB && layout.channels == 1) names = {"red", "green", "blue"};
+    const std::int64_t channels = std::int64_t{layout.channels} * form.samples;
+    const std::string all = names.empty() ? "" : fmt::format(" ({})", fmt::join(names, ", "));
+    const int chosen = options.channel.value_or(0);
+    if (chosen < 0 || chosen >= channels)
+        bad_file(path, "channel {} is not there: the file has {} channel{}{}, counted from 0", chosen, channels, channels == 1 ? "" : "s",
+                 all);
+    if (channels > 1) {
+        std::uint16_t extra = 0, *kinds = nullptr;
+        const bool alpha = channels == 2 && form.samples == 2 && TIFFGetField(file.get(), TIFFTAG_EXTRASAMPLES, &extra, &kinds) &&
+                           extra == 1 && kinds[0] != EXTRASAMPLE_UNSPECIFIED;
+        if (options.channel)
+            v.decisions.push_back(fmt::format("channel {} of {}{}", chosen, channels, all));
+        else if (alpha)
+            v.notes.push_back("the file's alpha is left out (--channel 1 reads it)");
+        else
+            v.notes.push_back(fmt::format("the file has {} channels{}: channel 0 is read (--channel N picks)", channels, all));
+    }
+    return {chosen / form.samples, static_cast<std::uint16_t>(chosen % form.samples)};
+}
+
+/// More channels than microscopes have, of one plane each and without names, are the slices of a stack whose writer did not know the axis,
+/// unless the user asks for one.
+void take_channels_as_slices(TiffLayout& layout, const TiffForm& form, const VolumeReadOptions& options, Voxels& v) {
+    constexpr int usual_channels = 4;
+    const bool asked = options.channel && form.samples == 1; // of pixels with several samples, --channel means one of those
+    if (!layout.channels_may_be_slices || layout.channels <= usual_channels || asked || form.depth > 1 || layout.slices > 1 ||
+        layout.times > 1)
+        return;
+    v.notes.push_back(fmt::format("the file calls its {} pages channels: taken as slices (--channel N reads one)", layout.channels));
+    std::swap(layout.slices, layout.channels);
+    for (TiffPlane& p : layout.planes) std::swap(p.slice, p.channel);
+}
+
+/// Without a z axis, times are the third one: a rule that does not depend on --frame.
+void take_times_as_slices(TiffLayout& layout, const TiffForm& form, Voxels& v) {
+    if (layout.slices > 1 || form.depth > 1 || layout.times == 1) return;
+    v.notes.push_back(fmt::format("the file has no z axis: its {} times (frames) are taken as slices", layout.times));
+    std::swap(layout.slices, layout.times);
+    for (TiffPlane& p : layout.planes) std::swap(p.slice, p.time);
+}
+
+/// The planes of one channel and time, a slice each.
+std::vector<TiffPlane> chosen_planes(const TiffLayout& layout, int channel, int time, const std::string& path) {
+    std::vector<TiffPlane> planes(static_cast<std::size_t>(layout.slices));
+    std::vector<bool> found(planes.size());
+    for (const TiffPlane& p : layout.planes) {
+        if (p.channel != channel || p.time != time) continue;
+        const auto slice = static_cast<std::size_t>(p.slice);
+        if (found[slice]) bad_file(path, "slice {} of channel {} at time {} is there twice", slice, channel, time);
+        planes[slice] = p;
+        found[slice] = true;
+    }
+    const auto missing = std::find(found.begin(), found.end(), false);
+    if (missing != found.end())
+        bad_file(path, "slice {} of {} (channel {}, time {}) is in no page: {} slices are there", missing - found.begin(), found.size(),
+                 channel, time, std::count(found.begin(), found.end(), true));
+    return planes;
+}
+
+/// The files that planes are in, opened one after another.
+class OpenFiles {
 public:
-    explicit TiffFile(const std::string& path) : path_(path), handle_(nullptr, &TIFFClose) {
-        const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
-        TIFFOpenOptionsSetErrorHandlerExtR(options.get(), &TiffFile::complain, this);
-        TIFFOpenOptionsSetWarningHandlerExtR(options.get(), &TiffFile::warn, this);
-        // m: not mapped into memory, where the file would count a second time.
-        handle_.reset(TIFFOpenExt(path.c_str(), "rm", options.get()));
-        if (!handle_) fail();
-    }
-    TIFF* get() const { return handle_.get(); }
-    const std::string& path() const { return path_; }
-    const std::string& complaint() const { return complaint_; }
-    [[noreturn]] void fail() const {
-        bad_file(path_, "libtiff cannot read it: {}; the file is truncated or damaged",
-                 complaint_.empty() ? "no reason given" : complaint_);
-    }
-    template <class T>
-    T field(ttag_t tag, T fallback) const {
-        T value = fallback;
-        return TIFFGetFieldDefaulted(get(), tag, &value) ? value : fallback;
+    explicit OpenFiles(const TiffSource& source) : source_(source) {}
+    /// Makes the plane's page the current one and returns its file. Throws Error{input} where it is missing.
+    const TiffFile& select(const TiffPlane& plane) {
+        if (plane.file.empty()) return select(source_.file, source_.pages, plane);
+        if (plane.file != name_) {
+            if (!std::filesystem::is_regular_file(plane.file))
+                bad_file(source_.path, "its slices are in several files: {} is missing", plane.file);
+            other_ = std::make_unique<TiffFile>(plane.file);
+            pages_ = other_->pages();
+            name_ = plane.file;
+        }
+        return select(*other_, pages_, plane);
     }
 
 private:
-    static int complain(TIFF*, void* self, const char*, const char* format, va_list arguments) {
-        char text[256];
-        std::vsnprintf(text, sizeof text, format, arguments);
-        static_cast<TiffFile*>(self)->complaint_ = text;
-        return 1;
-    }
-    /// Most warnings are of unknown tags; that of byte counts means that libtiff guesses where the pixels are.
-    static int warn(TIFF* tiff, void* self, const char* module, const char* format, va_list arguments) {
-        return std::strstr(format, "ByteCount") ? complain(tiff, self, module, format, arguments) : 1;
+    static const TiffFile& select(const TiffFile& file, const std::vector<TiffPage>& pages, const TiffPlane& plane) {
+        if (plane.page >= pages.size())
+            bad_file(file.path(), "page {} is expected by its metadata, the file has {}: it is truncated", plane.page, pages.size());
+        file.select(pages[plane.page]);
+        return file;
     }
 
-    std::string path_, complaint_;
-    std::unique_ptr<TIFF, void (*)(TIFF*)> handle_;
+    const TiffSource& source_;
+    std::string name_;
+    std::unique_ptr<TiffFile> other_;
+    std::vector<TiffPage> pages_;
 };
 
-struct Page {
-    std::uint32_t width = 0, height = 0;
-    SampleType type = SampleType::u8;
-    bool white_is_zero = false;
-};
+Voxels read_pages(const std::string& path, const std::string& name, const VolumeReadOptions& options) {
+    const TiffFile head(name);
+    const TiffSource source = source_of(head, path, options);
+    TiffLayout layout = layout_of(source);
+    if (layout.planes.empty()) bad_file(path, "the file has no page that is a slice");
+    OpenFiles files(source);
+    const TiffFile& first = files.select(layout.planes.front());
+    const TiffForm form = form_of(first, options.channel.has_value(), layout.indexed);
 
-bool operator==(const Page& a, const Page& b) {
-    return a.width == b.width && a.height == b.height && a.type == b.type && a.white_is_zero == b.white_is_zero;
-}
-
-SampleType sample_type(const TiffFile& file) {
-    const auto bits = file.field<std::uint16_t>(TIFFTAG_BITSPERSAMPLE, 1),
-               format = file.field<std::uint16_t>(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
-    const char kind = format == SAMPLEFORMAT_IEEEFP                                ? 'f'
-                      : format == SAMPLEFORMAT_INT                                 ? 'i'
-                      : format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID ? 'u'
-                                                                                   : '?';
-    const auto type = parse_sample_type(fmt::format("{}{}", kind, bits));
-    if (!type)
-        bad_file(file.path(),
-                 "pixels of {} bits in TIFF sample format {} are not read: expected 8, 16, 32 or 64 bit integers, or 32 or 64 bit floats",
-                 bits, format);
-    return *type;
-}
-
-Page page_of(const TiffFile& file) {
-    Page p;
-    if (!TIFFGetField(file.get(), TIFFTAG_IMAGEWIDTH, &p.width) || !TIFFGetField(file.get(), TIFFTAG_IMAGELENGTH, &p.height))
-        bad_file(file.path(), "a page has no size");
-    const auto samples = file.field<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL, 1);
-    const auto photometric = file.field<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
-    if (samples != 1 || photometric == PHOTOMETRIC_RGB)
-        bad_file(file.path(), "the pixels have {} channels (colour): clvr renders scalar volumes, extract one channel", samples);
-    if (photometric != PHOTOMETRIC_MINISBLACK && photometric != PHOTOMETRIC_MINISWHITE)
-        bad_file(file.path(), "the pixels are not grey values (TIFF photometric {}): save the stack as greyscale", photometric);
-    p.white_is_zero = photometric == PHOTOMETRIC_MINISWHITE;
-    p.type = sample_type(file);
-    return p;
-}
-
-/// Strip or tile extents against the page and the file, so that no page asks for what the file cannot hold.
-void check_extents(const TiffFile& file, const Page& page) {
-    TIFF* const t = file.get();
-    const bool tiled = TIFFIsTiled(t);
-    const std::uint64_t pieces = tiled ? TIFFNumberOfTiles(t) : TIFFNumberOfStrips(t), file_bytes = std::filesystem::file_size(file.path());
-    const std::uint64_t page_bytes = std::uint64_t{page.width} * page.height * sample_bytes(page.type);
-    std::uint64_t stored = 0;
-    for (std::uint32_t i = 0; i < pieces; ++i) {
-        int error = 0;
-        const std::uint64_t bytes = TIFFGetStrileByteCountWithErr(t, i, &error), offset = TIFFGetStrileOffsetWithErr(t, i, &error);
-        if (error) file.fail();
-        if (offset > file_bytes || bytes > file_bytes - offset)
-            bad_file(file.path(), "page {} holds bytes {} to {}, the file has {}: it is truncated", TIFFCurrentDirectory(t), offset,
-                     offset + bytes, file_bytes);
-        stored += bytes;
+    Voxels v;
+    describe(v, path, "TIFF", form.type);
+    append(v.notes, layout.notes);
+    append(v.decisions, layout.decisions);
+    append(v.notes, form_notes(first, form));
+    take_channels_as_slices(layout, form, options, v);
+    take_times_as_slices(layout, form, v);
+    const ChosenChannel channel = choose_channel(layout, first, form, options, path, v);
+    check_frame(options.frame, layout.times, path);
+    if (layout.times > 1) {
+        if (options.frame == 0)
+            v.notes.push_back(fmt::format("the file has {} times: the first is read (--frame N picks)", layout.times));
+        else
+            v.decisions.push_back(fmt::format("time {} of {}", options.frame, layout.times));
     }
-    const bool plain = file.field<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_NONE;
-    // No codec of libtiff packs a page tighter than this; zstd comes nearest.
-    constexpr std::uint64_t greatest_ratio = 40000;
-    check_capacity(page_bytes, plain ? stored : stored * greatest_ratio, file.path());
-}
-
-/// libtiff takes a directory whose link to the next one is cut off for the last: the file must hold the link of the current one.
-void check_link(const TiffFile& file) {
-    const bool wide = TIFFIsBigTIFF(file.get());
-    const std::size_t count_bytes = wide ? 8 : 2, entry_bytes = wide ? 20 : 12, link_bytes = wide ? 8 : 4;
-    const std::uint64_t offset = TIFFCurrentDirOffset(file.get()), size = std::filesystem::file_size(file.path());
-    std::array<unsigned char, 8> bytes{};
-    ByteStream stream(file.path(), ByteStream::Coding::plain, offset);
-    std::uint64_t entries = 0;
-    if (stream.read(bytes.data(), count_bytes) == count_bytes)
-        for (std::size_t i = 0; i < count_bytes; ++i) entries = entries << 8 | bytes[TIFFIsBigEndian(file.get()) ? i : count_bytes - 1 - i];
-    const std::uint64_t end = offset + count_bytes + entries * entry_bytes + link_bytes;
-    if (end > size)
-        bad_file(file.path(), "page {} ends at byte {}, the file has {}: it is truncated", TIFFCurrentDirectory(file.get()), end, size);
-}
-
-/// Where the pages are that are slices: not thumbnails. Every page is checked before the first is decoded.
-std::vector<toff_t> slices_of(const TiffFile& file, const Page& first) {
-    std::vector<toff_t> pages;
-    do {
-        if (file.field<std::uint32_t>(TIFFTAG_SUBFILETYPE, 0) & FILETYPE_REDUCEDIMAGE) continue;
-        if (const Page p = page_of(file); !(p == first))
-            bad_file(file.path(), "page {} is {} x {} {}, the first is {} x {} {}: all slices must be alike",
-                     TIFFCurrentDirectory(file.get()), p.width, p.height, sample_type_name(p.type), first.width, first.height,
-                     sample_type_name(first.type));
-        check_extents(file, first);
-        check_link(file);
-        pages.push_back(TIFFCurrentDirOffset(file.get()));
-    } while (TIFFReadDirectory(file.get()));
-    if (!file.complaint().empty()) file.fail();
-    if (pages.empty()) bad_file(file.path(), "the file has no page that is a slice");
-    return pages;
-}
-
-/// Decodes the current page to `to`: width x height samples in host byte order.
-void decode_page(const TiffFile& file, const Page& page, unsigned char* to) {
-    TIFF* const t = file.get();
-    const std::size_t size = sample_bytes(page.type), row_bytes = page.width * size;
-    if (!TIFFIsTiled(t)) {
-        const std::uint64_t rows = std::min(file.field<std::uint32_t>(TIFFTAG_ROWSPERSTRIP, page.height), page.height);
-        for (std::uint32_t strip = 0, n = TIFFNumberOfStrips(t); strip < n; ++strip) {
-            const std::uint64_t first = strip * rows;
-            if (first >= page.height) break;
-            const auto bytes = static_cast<tmsize_t>(std::min(rows, page.height - first) * row_bytes);
-            if (TIFFReadEncodedStrip(t, strip, to + first * row_bytes, bytes) != bytes) file.fail();
-        }
-        return;
+    const std::vector<TiffPlane> planes = chosen_planes(layout, channel.plane, options.frame, path);
+    for (const TiffPlane& p : planes) { // every page is checked before the first is decoded
+        const TiffFile& file = files.select(p);
+        if (p.plain_at) continue;
+        if (const TiffForm own = form_of(file, options.channel.has_value(), layout.indexed); !own.is_alike(form))
+            bad_file(file.path(), "page {} is {}, the first is {}: all slices must be alike", p.page, form_text(own), form_text(form));
+        check_extents(file, form);
     }
-    const auto tile_width = file.field<std::uint32_t>(TIFFTAG_TILEWIDTH, 0), tile_height = file.field<std::uint32_t>(TIFFTAG_TILELENGTH, 0);
-    if (tile_width == 0 || tile_height == 0) bad_file(file.path(), "its tiles have no size");
-    check_capacity(std::uint64_t{tile_width} * tile_height, std::uint64_t{1} << 28, file.path());
-    std::vector<unsigned char> tile(std::size_t{tile_width} * tile_height * size);
-    if (TIFFTileSize(t) != static_cast<tmsize_t>(tile.size())) file.fail();
-    for (std::uint64_t y = 0; y < page.height; y += tile_height) {
-        for (std::uint64_t x = 0; x < page.width; x += tile_width) {
-            const auto index = TIFFComputeTile(t, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0);
-            if (TIFFReadEncodedTile(t, index, tile.data(), static_cast<tmsize_t>(tile.size())) != static_cast<tmsize_t>(tile.size()))
-                file.fail();
-            const std::size_t columns = std::min<std::uint64_t>(tile_width, page.width - x),
-                              rows = std::min<std::uint64_t>(tile_height, page.height - y);
-            for (std::size_t row = 0; row < rows; ++row)
-                std::memcpy(to + ((y + row) * page.width + x) * size, tile.data() + row * tile_width * size, columns * size);
-        }
-    }
-}
-
-/// What ImageJ writes into the description of the first page: a line "name=value" each.
-std::map<std::string, std::string> imagej_fields(const TiffFile& file) {
-    const char* text = nullptr;
-    if (!TIFFGetField(file.get(), TIFFTAG_IMAGEDESCRIPTION, &text) || !text || std::strncmp(text, "ImageJ=", 7) != 0) return {};
-    std::map<std::string, std::string> fields;
-    std::string line;
-    for (const char* c = text;; ++c) {
-        if (*c != '\n' && *c != '\0') {
-            line += *c;
+    const std::int64_t slices = static_cast<std::int64_t>(planes.size()) * form.depth;
+    v.dims = check_dims({form.width, form.height, slices}, 1, form.type, path).dims;
+    set_geometry(v, layout, options);
+    allocate(v);
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        const TiffFile& file = files.select(planes[i]);
+        const TiffForm own = planes[i].plain_at ? form : form_of(file, options.channel.has_value(), layout.indexed);
+        if (form.depth == 1) {
+            store_slice(v, i, form.type, [&](unsigned char* to) {
+                planes[i].plain_at ? decode_plain(file, own, *planes[i].plain_at, to) : decode_page(file, own, channel.sample, to);
+            });
             continue;
         }
-        if (const auto equals = line.find('='); equals != std::string::npos) fields[line.substr(0, equals)] = line.substr(equals + 1);
-        line.clear();
-        if (*c == '\0') return fields;
+        std::vector<unsigned char> block(form.pixels() * sample_bytes(form.type));
+        decode_page(file, own, channel.sample, block.data());
+        store_samples(block.data(), form.type, form.pixels(), v, i * form.pixels());
     }
+    return v;
 }
 
-double number_of(const std::map<std::string, std::string>& fields, const char* name, double fallback) {
-    const auto f = fields.find(name);
-    double value = fallback;
-    if (f != fields.end()) std::from_chars(f->second.data(), f->second.data() + f->second.size(), value);
-    return value;
+/// A file that is one slice of a folder.
+class TiffSlice : public SliceImage {
+public:
+    TiffSlice(const std::string& name, const VolumeReadOptions& options) : file(name) {
+        const auto pages = file.pages();
+        const auto is_main = [](const TiffPage& p) { return !p.is_extra; };
+        if (const auto main = std::count_if(pages.begin(), pages.end(), is_main); main != 1)
+            bad_file(name, "it has {} pages although it stands in a folder of slices: name this file alone", main);
+        file.select(*std::find_if(pages.begin(), pages.end(), is_main));
+        description = file.text(TIFFTAG_IMAGEDESCRIPTION);
+        tiff_form = form_of(file, options.channel.has_value(), description.compare(0, 7, "ImageJ=") == 0);
+        check_extents(file, tiff_form);
+        if (tiff_form.depth > 1)
+            bad_file(name, "it has {} slices although it stands in a folder of slices: name it alone", tiff_form.depth);
+        width = tiff_form.width, height = tiff_form.height, type = tiff_form.type;
+        form = form_text(tiff_form);
+    }
+    void decode(unsigned char* to) override { decode_page(file, tiff_form, sample, to); }
+
+    TiffFile file;
+    TiffForm tiff_form;
+    std::string description;
+    std::uint16_t sample = 0;
+};
+
+/// What the metadata of one slice say of spacing and values; its axes are those of the folder.
+TiffLayout slice_layout(const TiffSlice& slice, const std::string& path, const VolumeReadOptions& options) {
+    const TiffSource source{slice.file, path, {}, slice.description, options};
+    TiffLayout layout;
+    if (!set_ome_scales(source, layout)) set_imagej_scales(source, layout, false);
+    return layout;
 }
 
-/// ImageJ's calibration; the resolution tags of other programs mean print, not specimens, and are not taken.
-std::optional<Double3> imagej_spacing(const TiffFile& file, const std::map<std::string, std::string>& fields) {
-    static const std::map<std::string, double> units_mm{{"mm", 1},           {"millimeter", 1}, {"cm", 10},        {"inch", 25.4},
-                                                        {"um", 1e-3},        {"micron", 1e-3},  {"microns", 1e-3}, {"\\u00B5m", 1e-3},
-                                                        {"\xc2\xb5m", 1e-3}, {"\xb5m", 1e-3},   {"nm", 1e-6}};
-    const auto unit = fields.find("unit");
-    const auto mm = unit == fields.end() ? units_mm.end() : units_mm.find(unit->second);
-    float x = 0, y = 0;
-    if (mm == units_mm.end() || !TIFFGetField(file.get(), TIFFTAG_XRESOLUTION, &x) || !TIFFGetField(file.get(), TIFFTAG_YRESOLUTION, &y) ||
-        !(x > 0) || !(y > 0))
-        return std::nullopt;
-    return Double3{mm->second / double{x}, mm->second / double{y}, mm->second * std::abs(number_of(fields, "spacing", 1))};
+Voxels read_slices(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options) {
+    check_frame(options.frame, 1, path);
+    TiffSlice head(files.front(), options);
+    TiffLayout layout = slice_layout(head, path, options);
+    Voxels v;
+    append(v.notes, layout.notes);
+    append(v.notes, form_notes(head.file, head.tiff_form));
+    head.sample = choose_channel(layout, head.file, head.tiff_form, options, path, v).sample;
+    stack_slices(v, path, "TIFF slices", files, [&](const std::string& name) {
+        auto slice = std::make_unique<TiffSlice>(name, options);
+        slice->sample = head.sample;
+        const TiffLayout own = slice_layout(*slice, path, options);
+        if (own.slope != layout.slope || own.intercept != layout.intercept)
+            bad_file(name, "its calibration is {:g} + {:g} x stored, that of {} is {:g} + {:g} x stored: all slices must be alike",
+                     own.intercept, own.slope, std::filesystem::path(files.front()).filename().string(), layout.intercept, layout.slope);
+        return slice;
+    });
+    append(v.decisions, layout.decisions);
+    set_geometry(v, layout, options);
+    return v;
 }
 
 } // namespace
 
 Voxels read_tiff(const std::string& path, const std::vector<std::string>& files, const VolumeReadOptions& options) {
-    TiffFile head(files.front());
-    const Page page = page_of(head);
-    const auto imagej = imagej_fields(head);
-    const auto calibration = imagej_spacing(head, imagej);
-    std::vector<toff_t> pages = slices_of(head, page);
-    const bool folder = files.size() > 1;
-
-    std::vector<std::string> notes;
-    std::int64_t frames = 1;
-    if (!folder) {
-        const double channels = number_of(imagej, "channels", 1), planes = number_of(imagej, "slices", 1) * number_of(imagej, "frames", 1);
-        if (channels > 1 && planes > 1)
-            bad_file(path, "the stack has {:g} channels: clvr renders scalar volumes, split the channels in ImageJ", channels);
-        if (channels > 1) notes.push_back("the file calls its pages channels: taken as slices"); // as writers other than ImageJ do
-        if (number_of(imagej, "images", 1) > static_cast<double>(pages.size()) && pages.size() == 1)
-            bad_file(path, "ImageJ says {} slices but the file has one page (its form for stacks above 4 GB): save it as BigTIFF",
-                     imagej.at("images"));
-        if (const double f = number_of(imagej, "frames", 1);
-            f > 1 && f <= static_cast<double>(pages.size()) && pages.size() % static_cast<std::size_t>(f) == 0)
-            frames = static_cast<std::int64_t>(f);
-    }
-    check_frame(options.frame, frames, path);
-    const std::size_t slices = folder ? files.size() : pages.size() / static_cast<std::size_t>(frames);
-    pages.erase(pages.begin(), pages.begin() + static_cast<std::ptrdiff_t>(folder ? 0 : slices * static_cast<std::size_t>(options.frame)));
-
-    Voxels v;
-    describe(v, path, folder ? "TIFF slices" : "TIFF", page.type);
-    v.notes.insert(v.notes.end(), notes.begin(), notes.end());
-    v.dims = check_dims({page.width, page.height, static_cast<std::int64_t>(slices)}, 1, page.type, path).dims;
-    v.geometry.spacing = options.spacing ? *options.spacing : calibration.value_or(Double3{1, 1, 1});
-    check_geometry(v.geometry, path);
-    if (!options.spacing && !calibration) v.notes.push_back("the file gives no voxel spacing: 1 mm is assumed (--spacing sets it)");
-    if (page.white_is_zero) v.notes.push_back("the file shows its smallest values as white: values are taken as stored");
-
-    const std::size_t page_samples = std::size_t{page.width} * page.height, slice_bytes = page_samples * sample_bytes(page.type);
-    allocate(v);
-    std::vector<unsigned char> scratch(is_kept(page.type) ? 0 : slice_bytes);
-    const auto decode = [&](const TiffFile& file, toff_t at, std::size_t slice) {
-        if (!TIFFSetSubDirectory(file.get(), at)) file.fail();
-        decode_page(file, page, scratch.empty() ? v.bytes.data() + slice * slice_bytes : scratch.data());
-        if (!scratch.empty()) store_samples(scratch.data(), page.type, page_samples, v, slice * page_samples);
-    };
-    for (std::size_t slice = 0; slice < slices; ++slice) {
-        if (!folder) {
-            decode(head, pages[slice], slice);
-            continue;
-        }
-        const TiffFile file(files[slice]);
-        const auto own = slices_of(file, page);
-        if (own.size() > 1)
-            bad_file(files[slice], "it has {} pages although it stands in a folder of slices: name this file alone", own.size());
-        decode(file, own.front(), slice);
-    }
-    return v;
+    return files.size() == 1 ? read_pages(path, files.front(), options) : read_slices(path, files, options);
 }
 
 } // namespace clvr

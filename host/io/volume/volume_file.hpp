@@ -7,9 +7,9 @@
 
 namespace clvr {
 
-/// Reads `path`: NIfTI, NRRD, MetaImage, a DICOM file or folder, TIFF, VTK image, RAW (name_WxHxD_type.raw, JSON sidecar, or options), .gz
-/// where the format has it. Every container is checked (header against byte count, gzip to its end, spacing and direction finite and
-/// nonzero) before its decoder runs. Throws Error{input}: one line with the file, what was expected and found, and what to try.
+/// Reads `path`: NIfTI, NRRD, MetaImage, a DICOM file or folder, TIFF, VTK image (legacy or XML), RAW (name_WxHxD_type.raw, JSON sidecar,
+/// or options), .gz where the format has it. Every container is checked (header against byte count, gzip to its end, spacing and direction
+/// finite and nonzero) before its decoder runs. Throws Error{input}: one line with the file, what was expected and found, and what to try.
 Voxels read_volume(const std::string& path, const VolumeReadOptions& options = {});
 
 /// SHA-256 (hex) of dims, type and decoded voxels.

@@ -1,96 +1,63 @@
-// Legacy VTK files with structured points (examples.vtk.org, "VTK File Formats").
-#include "host/io/volume/itk.hpp"
+// Legacy VTK files with a regular grid.
+#include "host/io/volume/axes.hpp"
 #include "host/io/volume/readers.hpp"
+#include "host/io/volume/reading_options.hpp"
+#include "host/io/volume/text_lines.hpp"
+#include "host/io/volume/vtk_legacy.hpp"
 
-#include <filesystem>
-#include <sstream>
+#include <algorithm>
+#include <cmath>
 
 namespace clvr {
 
 namespace {
 
-constexpr std::size_t greatest_header = std::size_t{1} << 16;
-
-/// The lines of the header one by one; voxels follow the line after "LOOKUP_TABLE".
-class Lines {
+/// Bytes that the file holds as numbers from 0 to 1.
+class UnitColors final : public ByteSource {
 public:
-    explicit Lines(const std::string& path) : path_(path), text_(read_head(path, greatest_header)) {}
-    /// The next line, as ITK counts: empty ones do not count.
-    std::string next() {
-        while (true) {
-            const auto end = text_.find('\n', at_);
-            if (end == std::string::npos) bad_file(path_, "the VTK header ends too early: the file is truncated or holds no SCALARS");
-            const std::string_view line = std::string_view(text_).substr(at_, end - at_);
-            at_ = end + 1;
-            if (line.size() > 256) bad_file(path_, "a line of the VTK header has {} characters: the file is damaged", line.size());
-            if (!trimmed(line).empty()) return std::string(trimmed(line));
+    explicit UnitColors(ByteSource& numbers) : numbers_(numbers) {}
+    std::size_t read(void* to, std::size_t bytes) override {
+        std::vector<float> numbers(bytes);
+        const std::size_t n = numbers_.read(numbers.data(), bytes * sizeof(float)) / sizeof(float);
+        for (std::size_t i = 0; i < n; ++i) {
+            const float x = std::isfinite(numbers[i]) ? std::clamp(numbers[i], 0.0f, 1.0f) : 0.0f;
+            static_cast<unsigned char*>(to)[i] = static_cast<unsigned char>(x * 255.0f + 0.5f);
         }
+        return n;
     }
-    std::size_t position() const { return at_; }
 
 private:
-    std::string path_, text_;
-    std::size_t at_ = 0;
+    ByteSource& numbers_;
 };
 
 } // namespace
 
 Voxels read_vtk(const std::string& path, const VolumeReadOptions& options) {
-    Lines lines(path);
-    if (lines.next().rfind("# vtk DataFile", 0) != 0) bad_file(path, "not a legacy VTK file: expected \"# vtk DataFile Version ...\"");
-    lines.next(); // the title
-    Container c;
-    c.data_path = path;
-    const std::string coding = lower_case(lines.next());
-    if (coding == "ascii")
-        c.coding = Container::Coding::text;
-    else if (coding != "binary")
-        bad_file(path, "expected ASCII or BINARY in the third line, found \"{:.40}\"", coding);
+    Voxels v;
+    v.source = path;
+    const LegacyVtk vtk = parse_legacy_vtk(path, v.notes);
+    const std::size_t index = choose_array(vtk.arrays, options, v);
+    const VtkArray& array = vtk.arrays[index];
+    const SampleType type = *array.type;
+    describe(v, path, "VTK image", type);
+    if (!vtk.spaced) v.notes.push_back("the file gives no voxel spacing: 1 mm is assumed");
+    check_frame(options.frame, 1, path);
+    const FileDims dims = vtk.grid.samples(array.of_cells);
+    v.dims = check_dims(dims, array.components, type, path).dims;
+    v.geometry = vtk.grid.placed(array.of_cells);
+    check_geometry(v.geometry, path);
 
-    bool sized = false, spaced = false;
-    std::uint64_t points = 0;
-    while (true) {
-        const std::string line = lines.next();
-        std::istringstream words(line);
-        std::string key, rest;
-        words >> key;
-        std::getline(words, rest);
-        key = lower_case(key);
-        if (key == "dataset") {
-            if (lower_case(trimmed(rest)) != "structured_points")
-                bad_file(path, "the data set is {:.40}: clvr reads STRUCTURED_POINTS (an image), resample it in ParaView", trimmed(rest));
-        } else if (key == "dimensions") {
-            const auto sizes = parse_integers(rest, 3, 1, "DIMENSIONS", path);
-            c.dims = {sizes[0], sizes[1], sizes[2]};
-            sized = true;
-        } else if (key == "spacing" || key == "aspect_ratio") {
-            check_spacing(rest, 3, "SPACING", path);
-            spaced = true;
-        } else if (key == "origin") {
-            if (const auto o = parse_numbers(rest); !o || o->size() != 3) bad_file(path, "ORIGIN is \"{:.60}\": expected 3 numbers", rest);
-        } else if (key == "point_data") {
-            points = static_cast<std::uint64_t>(parse_integers(rest, 1, 1, "POINT_DATA", path).front());
-        } else if (key == "scalars") {
-            std::string name, type, channels = "1";
-            std::istringstream(rest) >> name >> type >> channels;
-            const auto sample = parse_sample_type(lower_case(type));
-            if (!sample) bad_file(path, "the voxels have the type \"{:.40}\": expected unsigned_char, short, float, ...", type);
-            if (parse_integers(channels, 1, 1, "the number of components", path).front() != 1)
-                bad_file(path, "each voxel has {} values: clvr renders scalar volumes, extract one", channels);
-            c.type = *sample;
-            if (lower_case(lines.next()).rfind("lookup_table", 0) != 0) bad_file(path, "expected LOOKUP_TABLE after SCALARS");
-            break;
-        } else {
-            bad_file(path, "the VTK data are {:.40}: clvr reads SCALARS of POINT_DATA in STRUCTURED_POINTS", line);
-        }
-    }
-    if (!sized) bad_file(path, "the VTK header has no DIMENSIONS");
-    const CheckedDims dims = check_dims(c.dims, 1, c.type, path);
-    if (points != dims.bytes / sample_bytes(c.type))
-        bad_file(path, "POINT_DATA {} does not fit DIMENSIONS {} x {} x {}", points, c.dims[0], c.dims[1], c.dims[2]);
-    if (!spaced) c.notes.push_back("the file gives no voxel spacing: 1 mm is assumed");
-    c.offset = lines.position();
-    return decode_with_itk(ItkReader::vtk, c, path, "VTK image", options.frame);
+    const auto channel = static_cast<std::uint64_t>(chosen_channel(options, array.components, path, v.notes));
+    const auto components = static_cast<std::uint64_t>(array.components);
+    const LegacyVtkArray& place = vtk.places[index];
+    FileBytes file(path, ByteStream::Coding::plain, place.position);
+    TextLines lines(file, path);
+    TextSamples numbers(lines, place.unit_colors ? SampleType::f32 : type, v.count() * components, path);
+    UnitColors colors(numbers);
+    ByteSource& values = place.unit_colors ? static_cast<ByteSource&>(colors) : vtk.text ? static_cast<ByteSource&>(numbers) : file;
+    PickedBytes picked(values, sample_bytes(type), components, channel);
+    read_samples(components > 1 ? static_cast<ByteSource&>(picked) : values, type, !vtk.text && must_swap(true), v);
+    return v;
 }
 
 } // namespace clvr

@@ -1,8 +1,10 @@
 #include "host/io/volume/dicom/pixels.hpp"
+#include "host/io/volume/dicom/codecs.hpp"
 #include "host/io/volume/samples.hpp"
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 
@@ -21,35 +23,71 @@ namespace clvr {
 
 namespace {
 
-/// Bits above the stored ones are not of the value (old files keep overlays there): cut off, or filled with the sign.
+bool same_picture(const DicomFrame& a, const DicomFrame& b) { return a.image == b.image && a.number == b.number; }
+
 template <class T>
-void clean(unsigned char* pixels, std::size_t n, int unused_bits) {
+void mark(const unsigned char* pixels, std::size_t n, const DicomPadding& padding, std::vector<bool>& marks) {
+    for (std::size_t i = 0; i < n; ++i, pixels += sizeof(T)) {
+        T value;
+        std::memcpy(&value, pixels, sizeof value);
+        if (static_cast<double>(value) >= padding.low && static_cast<double>(value) <= padding.high) marks[i] = true;
+    }
+}
+
+/// Bits around the stored ones are not of the value (old files keep overlays there): cut off, or filled with the sign.
+template <class T>
+void clean(unsigned char* pixels, std::size_t n, int bits_above, int unused_bits) {
     using U = std::make_unsigned_t<T>;
     for (std::size_t i = 0; i < n; ++i, pixels += sizeof(T)) {
         U bits;
         std::memcpy(&bits, pixels, sizeof bits);
-        const T value = static_cast<T>(static_cast<T>(static_cast<U>(bits << unused_bits)) >> unused_bits);
+        const T value = static_cast<T>(static_cast<T>(static_cast<U>(bits << bits_above)) >> unused_bits);
         std::memcpy(pixels, &value, sizeof value);
     }
 }
 
-void clean(unsigned char* to, std::size_t n, const DicomPixels& p) {
-    const int unused = p.bits_allocated - p.bits_stored;
-    if (unused == 0) return;
-    switch (p.bits_allocated) {
-    case 8:
-        return p.is_signed ? clean<std::int8_t>(to, n, unused) : clean<std::uint8_t>(to, n, unused);
-    case 16:
-        return p.is_signed ? clean<std::int16_t>(to, n, unused) : clean<std::uint16_t>(to, n, unused);
+/// Cleans a picture and marks its padding. A padding value beyond the stored bits is one of the whole sample, before it is cleaned.
+template <class T>
+void finish(std::vector<unsigned char>& picture, const DicomImage& image, std::vector<bool>& marks) {
+    const DicomPixels& p = image.pixels;
+    marks.assign(image.padding ? p.count() : 0, false);
+    if constexpr (std::is_integral_v<T>) {
+        const int unused = p.bits_allocated - p.bits_stored;
+        const double range = std::ldexp(1.0, p.bits_stored), lowest = p.is_signed ? -range / 2 : 0;
+        const bool fits = image.padding && image.padding->low >= lowest && image.padding->high < lowest + range;
+        if (image.padding && !fits) mark<T>(picture.data(), p.count(), *image.padding, marks);
+        if (unused > 0) clean<T>(picture.data(), p.count(), p.bits_allocated - 1 - p.high_bit, unused);
+    }
+    if (image.padding) mark<T>(picture.data(), p.count(), *image.padding, marks);
+}
+
+void finish(std::vector<unsigned char>& picture, const DicomImage& image, std::vector<bool>& marks) {
+    switch (image.pixels.type()) {
+    case SampleType::u8:
+        return finish<std::uint8_t>(picture, image, marks);
+    case SampleType::i8:
+        return finish<std::int8_t>(picture, image, marks);
+    case SampleType::u16:
+        return finish<std::uint16_t>(picture, image, marks);
+    case SampleType::i16:
+        return finish<std::int16_t>(picture, image, marks);
+    case SampleType::u32:
+        return finish<std::uint32_t>(picture, image, marks);
+    case SampleType::i32:
+        return finish<std::int32_t>(picture, image, marks);
+    case SampleType::f32:
+        return finish<float>(picture, image, marks);
     default:
-        return p.is_signed ? clean<std::int32_t>(to, n, unused) : clean<std::uint32_t>(to, n, unused);
+        return finish<double>(picture, image, marks);
     }
 }
 
 /// One frame by GDCM: it sees the compressed bytes and the format of the pixels, not the file. Runs in the child; false where it fails.
-bool decode_fragments(const DicomSlice& s, std::vector<unsigned char>& to) {
+bool decode_fragments(const DicomFrame& frame, std::vector<unsigned char>& to) {
+    const DicomImage& s = *frame.image;
     std::string packed;
-    for (const auto& [offset, size] : s.file.fragments) {
+    for (std::size_t part = s.first_fragment[frame.number]; part < s.first_fragment[frame.number + 1]; ++part) {
+        const auto& [offset, size] = s.file.fragments[part];
         ByteStream stream(s.path, ByteStream::Coding::plain, offset);
         std::string fragment(size, '\0');
         stream.read(fragment.data(), fragment.size());
@@ -84,7 +122,7 @@ bool decode_fragments(const DicomSlice& s, std::vector<unsigned char>& to) {
 }
 
 /// Decodes the compressed slices of `order` into the pipe until one fails, then ends the process.
-[[noreturn]] void run_child(const std::vector<const DicomSlice*>& order, int pipe) {
+[[noreturn]] void run_child(const std::vector<const DicomFrame*>& order, int pipe) {
     for (const int crash : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE}) std::signal(crash, SIG_DFL);
     std::signal(SIGPIPE, SIG_DFL); // the parent gave up: end
     const int nowhere = open("/dev/null", O_WRONLY);
@@ -92,9 +130,12 @@ bool decode_fragments(const DicomSlice& s, std::vector<unsigned char>& to) {
     dup2(nowhere, STDERR_FILENO); // codecs and assertions talk
     try {
         std::vector<unsigned char> pixels;
-        for (const DicomSlice* s : order) {
-            if (!s->file.encapsulated) continue;
-            if (!decode_fragments(*s, pixels)) _exit(1);
+        const DicomFrame* last = nullptr;
+        for (const DicomFrame* f : order) {
+            if (last && same_picture(*last, *f)) continue;
+            last = f;
+            if (!f->image->file.encapsulated) continue;
+            if (!decode_fragments(*f, pixels)) _exit(1);
             for (std::size_t done = 0; done < pixels.size();) {
                 const ssize_t n = write(pipe, pixels.data() + done, pixels.size() - done);
                 if (n < 0 && errno != EINTR) _exit(1);
@@ -109,8 +150,8 @@ bool decode_fragments(const DicomSlice& s, std::vector<unsigned char>& to) {
 
 } // namespace
 
-DicomPixelReader::DicomPixelReader(std::vector<const DicomSlice*> order) : order_(std::move(order)) {
-    if (std::any_of(order_.begin(), order_.end(), [](const DicomSlice* s) { return s->file.encapsulated; })) start_child();
+DicomPixelReader::DicomPixelReader(std::vector<const DicomFrame*> order) : order_(std::move(order)) {
+    if (std::any_of(order_.begin(), order_.end(), [](const DicomFrame* f) { return f->image->file.encapsulated; })) start_child();
 }
 
 DicomPixelReader::~DicomPixelReader() {
@@ -134,36 +175,65 @@ void DicomPixelReader::start_child() {
     if (child_ < 0) throw Error(ErrorKind::internal, fmt::format("no process: {}", std::strerror(errno)), "DICOM decoder");
 }
 
-void DicomPixelReader::read_child(const DicomSlice& s, unsigned char* to) {
+void DicomPixelReader::read_child(const DicomImage& image) {
     constexpr int patience_ms = 20000;
-    for (std::size_t done = 0; done < s.pixels.bytes();) {
+    for (std::size_t done = 0; done < picture_.size();) {
         pollfd ready{pipe_, POLLIN, 0};
         const int events = poll(&ready, 1, patience_ms);
-        const ssize_t n = events > 0 ? ::read(pipe_, to + done, s.pixels.bytes() - done) : events;
+        const ssize_t n = events > 0 ? ::read(pipe_, picture_.data() + done, picture_.size() - done) : events;
         if (n < 0 && errno == EINTR) continue;
         if (n <= 0)
-            bad_file(
-                s.path,
-                "GDCM {} its compressed pixels (transfer syntax {}): the file is damaged, or compressed in a way that GDCM does not know",
-                events == 0 ? "needs more than 20 seconds for" : "cannot decode", s.file.transfer_syntax);
+            bad_file(image.path, "its compressed pixels ({}) {}: they are damaged, or of a variant that is not supported",
+                     transfer_syntax_name(image.file.transfer_syntax),
+                     events == 0 ? "take more than 20 seconds to decode" : "cannot be decoded");
         done += static_cast<std::size_t>(n);
     }
 }
 
-void DicomPixelReader::next(unsigned char* to) {
-    const DicomSlice& s = *order_.at(at_++);
-    if (s.file.encapsulated) {
-        read_child(s, to);
+void DicomPixelReader::read_plain(const DicomImage& image, std::size_t number) {
+    const DicomFile& file = image.file;
+    const std::size_t bytes = picture_.size();
+    const auto check = [&](bool whole) {
+        if (!whole)
+            bad_file(image.path, "expected {} bytes of pixels, found {}: the file is truncated", bytes * image.frames, file.pixel_bytes);
+    };
+    check(file.pixel_bytes >= bytes * (number + 1));
+    const std::uint64_t from = file.pixel_offset + bytes * number;
+    if (file.deflated_from != 0) {
+        if (inflated_of_ != &image) inflated_ = inflated_data_set(image.path, file.deflated_from);
+        inflated_of_ = &image;
+        check(inflated_.size() >= from + bytes);
+        std::memcpy(picture_.data(), inflated_.data() + from, bytes);
     } else {
-        ByteStream stream(s.path, ByteStream::Coding::plain, s.file.pixel_offset);
-        if (s.file.pixel_bytes < s.pixels.bytes() || stream.read(to, s.pixels.bytes()) != s.pixels.bytes())
-            bad_file(s.path, "expected {} bytes of pixels, found {}: the file is truncated", s.pixels.bytes(), s.file.pixel_bytes);
-        const SampleType type = s.pixels.bits_allocated == 8    ? SampleType::u8
-                                : s.pixels.bits_allocated == 16 ? SampleType::u16
-                                                                : SampleType::u32;
-        if (must_swap(s.file.big_endian)) swap_samples(to, type, s.pixels.count());
+        ByteStream stream(image.path, ByteStream::Coding::plain, from);
+        check(stream.read(picture_.data(), bytes) == bytes);
     }
-    clean(to, s.pixels.count(), s.pixels);
+    if (must_swap(file.data.big_endian)) swap_samples(picture_.data(), image.pixels.type(), image.pixels.count());
+}
+
+void DicomPixelReader::read_picture(const DicomFrame& frame) {
+    const DicomImage& image = *frame.image;
+    picture_.resize(image.pixels.bytes());
+    if (image.file.encapsulated)
+        read_child(image);
+    else
+        read_plain(image, frame.number);
+    finish(picture_, image, padding_);
+    current_ = &frame;
+}
+
+void DicomPixelReader::next(unsigned char* to, std::vector<bool>* padding) {
+    const DicomFrame& f = *order_.at(at_++);
+    if (!current_ || !same_picture(*current_, f)) read_picture(f);
+    const DicomPixels& p = f.image->pixels;
+    const auto row = static_cast<std::size_t>(f.columns), all = static_cast<std::size_t>(p.columns);
+    if (padding) padding->assign(padding_.empty() ? 0 : f.count(), false);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(f.rows); ++j) {
+        const std::size_t from = (static_cast<std::size_t>(f.first_row) + j) * all + static_cast<std::size_t>(f.first_column);
+        std::memcpy(to + j * row * p.sample_bytes(), picture_.data() + from * p.sample_bytes(), row * p.sample_bytes());
+        if (padding && !padding_.empty())
+            std::copy_n(padding_.begin() + static_cast<long>(from), row, padding->begin() + static_cast<long>(j * row));
+    }
 }
 
 } // namespace clvr

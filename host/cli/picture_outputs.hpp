@@ -1,0 +1,23 @@
+// The pictures that a command writes.
+#pragma once
+#include "host/frame/tonemap.hpp"
+
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// Writes frames to files and says, once for all of them, what a format cannot hold: a JPEG's alpha, pixels that are not square.
+class PictureOutputs {
+public:
+    /// Throws Error{input} unless all can be written (check_frame_path). `over`: what --background is called where the command has it.
+    explicit PictureOutputs(const std::vector<std::string>& paths, const std::string& over = "");
+    /// write_frame for each path.
+    void write(const Frame& frame, const Tonemap& tonemap, const std::vector<std::string>& paths);
+
+private:
+    std::string over_;
+    bool said_alpha_ = false, said_aspect_ = false;
+};
+
+} // namespace clvr

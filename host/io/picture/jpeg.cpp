@@ -1,0 +1,71 @@
+#include "host/io/atomic_file.hpp"
+#include "host/io/picture/display_pixels.hpp"
+#include "host/io/picture/frame_file.hpp"
+#include "runtime/error.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+#include <turbojpeg.h>
+
+namespace clvr {
+
+namespace {
+
+constexpr int quality = 95, largest_side = 65500; // libjpeg's JPEG_MAX_DIMENSION
+constexpr std::size_t largest_pixels = std::size_t{1} << 28;
+
+using Handle = std::unique_ptr<void, int (*)(tjhandle)>;
+
+Handle checked(tjhandle handle) {
+    if (!handle) throw Error(ErrorKind::memory, "there is no memory for libjpeg-turbo");
+    return {handle, tjDestroy};
+}
+
+} // namespace
+
+void write_jpeg(const Frame& frame, const Tonemap& tonemap, const std::string& path) {
+    const Region shown = frame.shown();
+    if (shown.width > largest_side || shown.height > largest_side)
+        throw Error(
+            ErrorKind::input,
+            fmt::format("{} x {} pixels are too many for JPEG, which ends at {}; name a .png", shown.width, shown.height, largest_side),
+            path);
+    DisplayPixels pixels;
+    try {
+        pixels = display_pixels(frame, tonemap, false);
+    } catch (const Error& e) {
+        throw e.where().empty() ? Error(e.kind(), e.what(), path) : e;
+    }
+    const Handle encoder = checked(tjInitCompress());
+    unsigned char* bytes = nullptr;
+    unsigned long size = 0;
+    const int failed = tjCompress2(encoder.get(), pixels.values.data(), pixels.width, 0, pixels.height, TJPF_RGB, &bytes, &size, TJSAMP_444,
+                                   quality, TJFLAG_ACCURATEDCT);
+    const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owner(bytes, tjFree);
+    if (failed != 0) throw Error(ErrorKind::internal, fmt::format("libjpeg-turbo cannot encode: {}", tjGetErrorStr2(encoder.get())), path);
+    write_atomically(path, bytes, size);
+}
+
+Frame read_jpeg(const std::string& path) {
+    const std::string bytes = read_text(path, std::size_t{1} << 30);
+    const auto* const data = reinterpret_cast<const unsigned char*>(bytes.data());
+    const Handle decoder = checked(tjInitDecompress());
+    const auto refuse = [&](const char* what) {
+        return Error(ErrorKind::input, fmt::format("{}: {}", what, tjGetErrorStr2(decoder.get())), path);
+    };
+    DisplayPixels pixels;
+    int sampling = 0, colours = 0;
+    if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &pixels.width, &pixels.height, &sampling, &colours) != 0)
+        throw refuse("is no JPEG that clvr reads");
+    if (colours == TJCS_CMYK || colours == TJCS_YCCK) throw Error(ErrorKind::input, "is a JPEG of inks (CMYK); save it as RGB", path);
+    const std::size_t count = static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height);
+    if (count > largest_pixels)
+        throw Error(ErrorKind::input, fmt::format("is {} x {} pixels; expected at most 2^28 in all", pixels.width, pixels.height), path);
+    pixels.values.resize(3 * count);
+    if (tjDecompress2(decoder.get(), data, bytes.size(), pixels.values.data(), pixels.width, 0, pixels.height, TJPF_RGB,
+                      TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS) != 0)
+        throw refuse("is a damaged JPEG");
+    return frame_of(pixels);
+}
+
+} // namespace clvr

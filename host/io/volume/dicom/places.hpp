@@ -1,0 +1,32 @@
+// The slices of a stack by the places where they lie, and one of them for each.
+#pragma once
+#include "host/io/volume/dicom/frame.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// The slices at one place along the normal [mm]: indices of frames.
+struct SlicesAtPlace {
+    double along;
+    std::vector<std::size_t> slices;
+};
+
+/// In ascending order along `normal`. Copies of files are dropped (noted): what a file says of itself agrees, not its UID alone.
+std::vector<SlicesAtPlace> places_of(const std::vector<DicomFrame>& frames, std::vector<std::size_t> stack, const Double3& normal,
+                                     std::vector<std::string>& notes);
+std::size_t slices_in(const std::vector<SlicesAtPlace>& places);
+
+/// One slice for each place.
+struct FrameChoice {
+    std::vector<std::size_t> slices;
+    std::size_t times = 1; ///< how many slices every place has
+    std::vector<std::string> notes;
+};
+/// Frame `frame` where every place has as many, in the order of their times, echoes or numbers; else the first of the set that is at every
+/// place, or of all. What stays out is noted. Sorts `places`. Throws Error{input} with `where` for a frame that is not there.
+FrameChoice choose_frame(std::vector<SlicesAtPlace>& places, const std::vector<DicomFrame>& frames, int frame, const std::string& where);
+
+} // namespace clvr

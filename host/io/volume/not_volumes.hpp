@@ -1,0 +1,14 @@
+// Files that people try and that clvr does not read.
+#pragma once
+#include <string>
+
+namespace clvr {
+
+/// What a file of these first bytes is and what to do, where they are the mark of a kind that is no volume of clvr's; else empty.
+std::string other_kind_of_head(const std::string& head);
+/// The same by the file's name, in any case, for a file whose bytes say nothing.
+std::string other_kind_of_name(const std::string& path);
+/// The same for a folder.
+std::string other_kind_of_folder(const std::string& path);
+
+} // namespace clvr
