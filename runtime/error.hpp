@@ -17,8 +17,13 @@ public:
     ErrorKind kind() const { return kind_; }
     int exit_code() const { return static_cast<int>(kind_); }
     const std::string& where() const { return where_; }
-    /// "where: what", or "what" when there is no where.
-    std::string line() const { return where_.empty() ? what() : where_ + ": " + what(); }
+    /// "where: what", or "what" when there is no where. One line: control characters, which a file's own words may hold, become blanks.
+    std::string line() const {
+        std::string text = where_.empty() ? what() : where_ + ": " + what();
+        for (char& c : text)
+            if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+        return text;
+    }
 
 private:
     ErrorKind kind_;

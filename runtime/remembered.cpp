@@ -25,6 +25,14 @@ nlohmann::json entries_of(const std::vector<RememberedDevice>& devices) {
     return entries;
 }
 
+/// A member that counts, 0 where it is absent; nothing when it is no whole number from 0 to 2^20.
+std::optional<int> count_of(const nlohmann::json& entry, const char* name) {
+    if (!entry.contains(name)) return 0;
+    const nlohmann::json& value = entry.at(name);
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > 1u << 20) return std::nullopt;
+    return value.get<int>();
+}
+
 bool same_names(const DeviceFacts& a, const DeviceFacts& b) { return a.platform == b.platform && a.name == b.name; }
 
 } // namespace
@@ -33,17 +41,22 @@ std::optional<std::vector<RememberedDevice>> load_remembered(const std::string& 
     const auto path = remembered_path();
     const auto text = path ? load_file(*path) : std::nullopt;
     if (!text) return std::nullopt;
+    const Error no_list(ErrorKind::input,
+                        "is not a list of devices as clvr-bench --save writes it; delete the file or run clvr-bench --save",
+                        path->string());
     try {
         const auto json = nlohmann::json::parse(*text);
         const bool by_task = json.contains("tasks") && json.at("tasks").contains(task);
         std::vector<RememberedDevice> devices;
-        for (const nlohmann::json& entry : by_task ? json.at("tasks").at(task) : json.at("devices"))
-            devices.push_back({entry.at("platform"), entry.at("name"), entry.value("occurrence", 0), entry.value("sub_devices", 0)});
+        for (const nlohmann::json& entry : by_task ? json.at("tasks").at(task) : json.at("devices")) {
+            const auto occurrence = count_of(entry, "occurrence"), sub_devices = count_of(entry, "sub_devices");
+            if (!occurrence || !sub_devices) throw no_list;
+            devices.push_back({entry.at("platform"), entry.at("name"), *occurrence, *sub_devices});
+        }
         if (devices.empty()) throw Error(ErrorKind::input, "names no device; delete the file or run clvr-bench --save", path->string());
         return devices;
     } catch (const nlohmann::json::exception&) {
-        throw Error(ErrorKind::input, "is not a list of devices as clvr-bench --save writes it; delete the file or run clvr-bench --save",
-                    path->string());
+        throw no_list;
     }
 }
 

@@ -27,13 +27,19 @@ bool is_name(const std::string& name) {
            std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
+/// In 0..2^30.
+bool is_value(const nlohmann::json& value) {
+    return value.is_number_integer() && value.get<std::int64_t>() >= 0 && value.get<std::int64_t>() <= largest_value;
+}
+
 /// The members "tunables" and "evidence" of a file. Throws Error{input}.
 Tuning tuning_of(const nlohmann::json& json, const std::string& where) {
     Tuning tuning;
     for (const auto& [name, value] : json.at("tunables").items()) {
-        if (!is_name(name) || !value.is_number_integer() || value.get<std::int64_t>() < 0 || value.get<std::int64_t>() > largest_value)
-            throw Error(ErrorKind::input, fmt::format("\"{}\": {} is no tunable with a whole number from 0 to 2^30", name, value.dump()),
-                        where);
+        if (!is_name(name) || !is_value(value)) {
+            const std::string found = value.is_number() ? value.dump() : value.type_name(); // a text or a list may have any size and depth
+            throw Error(ErrorKind::input, fmt::format("\"{}\": {} is no tunable with a whole number from 0 to 2^30", name, found), where);
+        }
         tuning.values[name] = value.get<int>();
     }
     if (json.contains("evidence"))
@@ -124,6 +130,8 @@ bool ShippedTuning::fits(const DeviceFacts& device) const {
 ShippedTuning parse_shipped_tuning(const std::string& text, const std::string& where) {
     return read_json(text, where, [&](const nlohmann::json& json) {
         const nlohmann::json& match = json.at("match");
+        if (match.contains("native_float_width") && !is_value(match.at("native_float_width")))
+            throw Error(ErrorKind::input, "\"native_float_width\" is no whole number of 0 or more", where);
         return ShippedTuning{json.at("name"), match.at("platform"), match.at("type"), match.value("native_float_width", 0u),
                              tuning_of(json, where)};
     });

@@ -3,6 +3,7 @@
 #include "runtime/error.hpp"
 
 #include <algorithm>
+#include <climits>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -24,8 +25,13 @@ Dataset parse_manifest(const std::string& text, const std::string& where) {
                                {"computed", &d.computed}})
             j.at(key).get_to(*to);
         d.url = j.value("url", "");
-        d.bytes = j.value("bytes", std::uint64_t{0});
+        const auto bytes = j.value("bytes", nlohmann::json(0u));
+        if (!bytes.is_number_unsigned()) throw Error(ErrorKind::internal, "has bytes that are no whole number", where);
+        d.bytes = bytes.get<std::uint64_t>();
         d.sha512 = j.value("sha512", "");
+        for (const auto& n : j.at("dims"))
+            if (!n.is_number_unsigned() || n.get<std::uint64_t>() > INT_MAX)
+                throw Error(ErrorKind::internal, "has dims that are no whole numbers", where);
         j.at("dims").get_to(d.dims);
         j.at("spacing").get_to(d.spacing);
         const auto& view = j.at("view");

@@ -154,6 +154,7 @@ std::vector<std::array<double, step>> rows(JsonFields& fields, const std::string
         if (i % step != 0 && !(result[i / step][i % step] >= 0 && result[i / step][i % step] <= 1))
             fields.fail(name, "0..1 in all numbers but the values");
     }
+    if (!std::isfinite(result.back()[0] - result.front()[0])) fields.fail(name, "values whose span is a finite number");
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace clvr {
 
@@ -20,7 +21,7 @@ std::vector<TransferFunction::Point> over_stored_values(const TransferFunction& 
             p.value = reversed ? lerp(high, low, p.value) : lerp(low, high, p.value);
         else
             p.value = (p.value - v.intercept) / v.slope;
-        if (!std::isfinite(p.value))
+        if (!(std::fabs(p.value) <= std::numeric_limits<float>::max())) // the device's numbers
             throw Error(ErrorKind::input,
                         fmt::format("the transfer function lies outside what slope {} and intercept {} can reach", v.slope, v.intercept),
                         tf.name);
@@ -56,9 +57,10 @@ TransferTable tabulate(const TransferFunction& tf, const Voxels& v, double low, 
     TransferTable table;
     table.first = points.front().value;
     table.last = points.back().value;
-    const double greatest = std::max(std::fabs(table.first), std::fabs(table.last)), scale = greatest > 0 ? greatest
-                                                                                             : high > low ? high - low
-                                                                                                          : 1;
+    const double greatest = std::max(std::fabs(table.first), std::fabs(table.last)), magnitude = greatest > 0 ? greatest
+                                                                                                 : high > low ? high - low
+                                                                                                              : 1;
+    const double scale = std::max(magnitude, 0x1p-90);                 // so that index_scale() is a finite float
     const bool one_value = table.last - table.first < scale * 0x1p-22; // a constant or one step, as far as float values can tell
     if (one_value) {
         table.first -= scale * 0x1p-17;

@@ -42,7 +42,9 @@ protected:
     void expect_whole_frames(const std::string& folder) const {
         std::error_code none;
         for (const auto& entry : fs::recursive_directory_iterator(home.path() / folder, none))
-            if (entry.path().extension() == ".exr") EXPECT_NO_THROW(read_exr(entry.path().string())) << entry.path();
+            if (entry.path().extension() == ".exr") {
+                EXPECT_NO_THROW(read_exr(entry.path().string())) << entry.path();
+            }
     }
 
     Kills() { fs::create_directory(home.path() / "out"); }
@@ -67,7 +69,9 @@ TEST_F(Kills, Train) {
     const auto check = [&] {
         fs::create_directories(home.path() / "out/m");
         for (const auto& entry : fs::directory_iterator(home.path() / "out/m"))
-            if (entry.path().extension() == ".safetensors") EXPECT_NO_THROW(read_model(entry.path().string())) << entry.path();
+            if (entry.path().extension() == ".safetensors") {
+                EXPECT_NO_THROW(read_model(entry.path().string())) << entry.path();
+            }
     };
     check();
     torture({"train", path("pairs"), "-o", model, "--epochs", "3", "--batch", "4", "--patch", "16", "--patches-per-image", "8"}, "out/m",

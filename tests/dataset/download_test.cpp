@@ -1,4 +1,5 @@
 #include "host/dataset/download.hpp"
+#include "host/dataset/embedded_manifests.hpp"
 #include "host/dataset/manifest.hpp"
 #include "runtime/error.hpp"
 #include "tests/dataset/server.hpp"
@@ -169,6 +170,12 @@ TEST(Manifests, AreCompleteAndKnownByName) {
     EXPECT_THROW(dataset_named("unicorn"), Error);
     EXPECT_THROW(parse_manifest("{}", "x.json"), Error);
     EXPECT_THROW(parse_manifest("[", "x.json"), Error);
+    const std::string sound = embedded_manifests().begin()->second;
+    EXPECT_NO_THROW(parse_manifest(sound, "x.json"));
+    std::string broken = sound;
+    const std::size_t number = broken.find_first_of("0123456789", broken.find("\"dims\""));
+    broken.insert(number, "1e300, ");
+    EXPECT_THROW(parse_manifest(broken, "x.json"), Error);
 }
 
 } // namespace

@@ -202,7 +202,9 @@ TEST(Remembered, ByTask) {
 TEST(Remembered, BrokenFileIsNamed) {
     const TemporaryFolder folder;
     const ScopedVariable config("XDG_CONFIG_HOME", folder.path().string());
-    for (const char* text : {"", "{", "[]", "{\"devices\": 3}", "{\"devices\": []}", "{\"devices\": [{\"name\": 1}]}"}) {
+    for (const char* text : {"", "{", "[]", "{\"devices\": 3}", "{\"devices\": []}", "{\"devices\": [{\"name\": 1}]}",
+                             "{\"devices\": [{\"platform\": \"p\", \"name\": \"n\", \"occurrence\": 1e300}]}",
+                             "{\"devices\": [{\"platform\": \"p\", \"name\": \"n\", \"sub_devices\": -1}]}"}) {
         folder.write("clvr/device.json", text);
         try {
             load_remembered();

@@ -49,6 +49,11 @@ TEST(Size, Text) {
     EXPECT_EQ(size_text((std::size_t{1} << 40) * 5 / 2), "2.5 TiB");
 }
 
+TEST(ErrorLine, IsOneLineWhateverAFileSays) {
+    EXPECT_EQ(Error(ErrorKind::input, "\"a\nb\x1b[31m\" is \xc3\xbc", "x\ty").line(), "x y: \"a b [31m\" is \xc3\xbc");
+    EXPECT_EQ(Error(ErrorKind::usage, "what").line(), "what");
+}
+
 TEST(Check, NamesTheCallAndTheStatus) {
     const Error error = translated(cl::Error(CL_INVALID_KERNEL_ARGS, "clEnqueueNDRangeKernel"), "shade on a device");
     EXPECT_EQ(error.kind(), ErrorKind::device);

@@ -51,13 +51,14 @@ TEST_F(TuningFiles, SavedAndFoundAgainForThisDriverOnly) {
 TEST_F(TuningFiles, BrokenFilesAreLeftOutAndRefused) {
     const std::string good = R"({"format": "clvr tuning 1", "tunables": {"a": 1}})";
     EXPECT_EQ(parse_tuning(good, "x").values.at("a"), 1);
-    for (const std::string text :
-         {"", "{", "[]", "null", "\x80\xff", "{\"format\": \"clvr tuning 2\", \"tunables\": {}}", "{\"tunables\": {\"a\": 1}}",
-          "{\"format\": \"clvr tuning 1\"}", "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": 1.5}}",
-          "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": \"1\"}}", "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": -1}}",
-          "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": 4000000000}}",
-          "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a b\": 1}}", "{\"format\": \"clvr tuning 1\", \"tunables\": 3}",
-          "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": 1}, \"evidence\": [1]}"}) {
+    for (const std::string& text : std::vector<std::string>{
+             "", "{", "[]", "null", "\x80\xff", "{\"format\": \"clvr tuning 2\", \"tunables\": {}}", "{\"tunables\": {\"a\": 1}}",
+             "{\"format\": \"clvr tuning 1\"}", "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": 1.5}}",
+             "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": \"1\"}}", "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": -1}}",
+             "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": 4000000000}}",
+             "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a b\": 1}}", "{\"format\": \"clvr tuning 1\", \"tunables\": 3}",
+             "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": 1}, \"evidence\": [1]}",
+             "{\"format\": \"clvr tuning 1\", \"tunables\": {\"a\": " + std::string(100000, '[') + std::string(100000, ']') + "}}"}) {
         try {
             parse_tuning(text, "file.json");
             ADD_FAILURE() << text;
@@ -135,13 +136,15 @@ TEST(Shipped, EachFileIsUnderstoodAndFitsOneKindOfDevice) {
     DeviceFacts gpu = pocl(16);
     gpu.type = DeviceType::gpu;
     EXPECT_FALSE(shipped_tuning(gpu));
-    for (const char* text : {"{}", "{\"name\": \"x\", \"match\": {}, \"tunables\": {}}", "[]"})
+    for (const char* text : {"{}", "{\"name\": \"x\", \"match\": {}, \"tunables\": {}}", "[]",
+                             R"({"name": "x", "match": {"platform": "p", "type": "cpu", "native_float_width": 1e300}, "tunables": {}})"})
         EXPECT_THROW(parse_shipped_tuning(text, "x"), Error) << text;
 }
 
 TEST(TuneVariable, Malformed) {
     EXPECT_EQ(parse_tunables("a=1,b=-2", "x"), (Tunables{{"a", 1}, {"b", -2}}));
-    for (const char* text : {"a", "=1", "a=", "a=1x", "a=1,,b=2"}) EXPECT_THROW(parse_tunables(text, "CLVR_TUNE"), Error) << text;
+    for (const char* text : {"a", "=1", "a=", "a=1x", "a=1,,b=2", "a=4294967297"})
+        EXPECT_THROW(parse_tunables(text, "CLVR_TUNE"), Error) << text;
 }
 
 } // namespace

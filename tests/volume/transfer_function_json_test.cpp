@@ -186,6 +186,7 @@ TEST(ParaViewTest, Refusals) {
     EXPECT_THAT(refusal("[]"), HasSubstr("empty list"));
     EXPECT_THAT(refusal(R"([{"ColorSpace": "RGB"}])"), HasSubstr("RGBPoints is missing"));
     EXPECT_THAT(refusal(R"([{"RGBPoints": [0, 1, 1]}])"), HasSubstr("4 numbers a point"));
+    EXPECT_THAT(refusal(R"([{"RGBPoints": [-1e308, 1, 1, 1, 1e308, 0, 0, 0]}])"), HasSubstr("span is a finite number"));
     EXPECT_THAT(refusal(R"([{"RGBPoints": []}])"), HasSubstr("RGBPoints"));
     EXPECT_THAT(refusal(R"([{"RGBPoints": [0, 1, 1, "a"]}])"), HasSubstr("numbers"));
     EXPECT_THAT(refusal(R"([{"RGBPoints": [0, 1, 1, 255]}])"), HasSubstr("0..1"));

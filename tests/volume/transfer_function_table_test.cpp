@@ -98,7 +98,7 @@ TEST(TransferTableTest, NormalizedSpansTheRange) {
 }
 
 TEST(TransferTableTest, OnePointIsAConstant) {
-    for (double value : {0.0, 300.0, -1e-12, 1e12}) {
+    for (double value : {0.0, 300.0, -1e-12, 1e12, 1e-40, 5e-324, -3e38}) {
         const TransferTable t = table({point(value, 0.5, 0.25)});
         EXPECT_LT(t.first, t.last);
         EXPECT_TRUE(std::isfinite(static_cast<float>(t.index_scale())));
@@ -142,6 +142,8 @@ TEST(TransferTableTest, WhatIsNotANumberIsRefused) {
     EXPECT_THROW(table({point(0, 1)}, scaled(0, 0)), Error);
     EXPECT_THROW(table({point(0, 1)}, scaled(nan, 0)), Error);
     EXPECT_THROW(table({point(1e300, 1)}, scaled(1e-300, 0)), Error);
+    EXPECT_THROW(table({point(0, 0), point(1e39, 1)}), Error) << "beyond the floats of the device";
+    EXPECT_THROW(table({point(-1e308, 0), point(1e308, 1)}), Error);
 }
 
 } // namespace

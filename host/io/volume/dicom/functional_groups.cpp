@@ -71,7 +71,7 @@ std::vector<DicomFrame> functional_group_frames(const DicomElements& data, const
     if (items != image.frames && !(items == 0 && image.frames == 1))
         bad_file(image.path, "PerFrameFunctionalGroupsSequence has {} items for {} frames", items, image.frames);
     const bool is_map = data.text(sop_class) == "1.2.840.10008.5.1.4.1.1.30";
-    std::vector<DicomFrame> frames;
+    std::vector<DicomFrame> all;
     for (std::size_t f = 0; f < image.frames; ++f) {
         const FrameGroups groups(items > 0 ? &own->second[f] : nullptr, data.item(shared_groups), data);
         DicomFrame frame = common;
@@ -80,9 +80,9 @@ std::vector<DicomFrame> functional_group_frames(const DicomElements& data, const
         frame.place = place_of(groups.with(plane_position, position), groups.with(plane_orientation, orientation), measures, image.path);
         read_scale(groups, is_map, frame);
         read_labels(groups, frame);
-        frames.push_back(std::move(frame));
+        all.push_back(std::move(frame));
     }
-    return frames;
+    return all;
 }
 
 } // namespace clvr
