@@ -51,10 +51,11 @@ TEST(DownloadKills, LeaveAWholeFileOrAPart) {
     for (int k = 0; k < kills(); ++k) {
         if (fs::exists(path)) fs::remove(path);
         kill_after(begin_download(), moment(k) * life);
-        if (fs::exists(path))
+        if (fs::exists(path)) {
             EXPECT_EQ(text_of(path), body) << "kill " << k;
-        else if (k % 2) // this time the next one goes on
+        } else if (k % 2) { // this time the next one goes on
             EXPECT_NO_THROW(download({server.url(), path, body.size(), "", 3, 0.01}));
+        }
     }
     download({server.url(), path, body.size(), "", 3, 0.01});
     EXPECT_EQ(text_of(path), body);
