@@ -17,9 +17,11 @@ public:
     ErrorKind kind() const { return kind_; }
     int exit_code() const { return static_cast<int>(kind_); }
     const std::string& where() const { return where_; }
-    /// "where: what", or "what" when there is no where. One line: control characters, which a file's own words may hold, become blanks.
+    /// "where: what", or "what" when there is no where. Of input and usage it is one line: control characters, which a file's own words
+    /// may hold, become blanks. Others keep their lines: a compiler's log has many.
     std::string line() const {
         std::string text = where_.empty() ? what() : where_ + ": " + what();
+        if (kind_ != ErrorKind::input && kind_ != ErrorKind::usage) return text;
         for (char& c : text)
             if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
         return text;

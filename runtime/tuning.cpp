@@ -38,7 +38,7 @@ Tuning tuning_of(const nlohmann::json& json, const std::string& where) {
     for (const auto& [name, value] : json.at("tunables").items()) {
         if (!is_name(name) || !is_value(value)) {
             const std::string found = value.is_number() ? value.dump() : value.type_name(); // a text or a list may have any size and depth
-            throw Error(ErrorKind::input, fmt::format("\"{}\": {} is no tunable with a whole number from 0 to 2^30", name, found), where);
+            throw Error(ErrorKind::input, fmt::format("\"{}\": {} is no tunable with a whole number within -2^30..2^30", name, found), where);
         }
         tuning.values[name] = value.get<int>();
     }
@@ -69,8 +69,8 @@ Tunables parse_tunables(const std::string& text, const std::string& where) {
         const std::size_t start = equals == std::string::npos ? item.size() : equals + 1;
         char* end = nullptr;
         const long value = std::strtol(item.c_str() + start, &end, 10);
-        if (equals == 0 || end == item.c_str() + start || *end || value < 0 || value > largest_value)
-            throw Error(ErrorKind::usage, fmt::format("\"{}\" is not name=value with a whole number from 0 to 2^30", item), where);
+        if (equals == 0 || end == item.c_str() + start || *end || value < -largest_value || value > largest_value)
+            throw Error(ErrorKind::usage, fmt::format("\"{}\" is not name=value with a whole number within -2^30..2^30", item), where);
         tunables[item.substr(0, equals)] = static_cast<int>(value);
     }
     return tunables;
