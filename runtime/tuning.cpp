@@ -38,7 +38,8 @@ Tuning tuning_of(const nlohmann::json& json, const std::string& where) {
     for (const auto& [name, value] : json.at("tunables").items()) {
         if (!is_name(name) || !is_value(value)) {
             const std::string found = value.is_number() ? value.dump() : value.type_name(); // a text or a list may have any size and depth
-            throw Error(ErrorKind::input, fmt::format("\"{}\": {} is no tunable with a whole number within -2^30..2^30", name, found), where);
+            throw Error(ErrorKind::input, fmt::format("\"{}\": {} is no tunable with a whole number within -2^30..2^30", name, found),
+                        where);
         }
         tuning.values[name] = value.get<int>();
     }

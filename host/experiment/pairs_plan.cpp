@@ -36,8 +36,8 @@ PairsPlan parse_pairs_plan(const std::string& text, const std::string& where) {
         for (const auto& s : j.at("scenes")) p.scenes.push_back(parse_scene(s.dump(), where));
         if (p.views.empty() || p.scenes.empty() || p.spp.empty()) throw Error(ErrorKind::input, "names no views", where);
         return p;
-    } catch (const nlohmann::json::exception& e) {
-        throw Error(ErrorKind::input, fmt::format("is no pairs.json: {}", e.what()), where);
+    } catch (const nlohmann::json::exception&) {
+        throw Error(ErrorKind::input, "is damaged, or not what `clvr pairs` writes", where);
     }
 }
 

@@ -31,8 +31,8 @@ PairsFolder read_pairs(const std::string& folder) {
         reference_spp = plan.at("reference_spp").get<int>();
         const auto spp = plan.value("spp", std::vector<int>()); // in turn
         for (int k = 0; k < frames && !spp.empty(); ++k) pairs.spp.push_back(spp[static_cast<std::size_t>(k) % spp.size()]);
-    } catch (const nlohmann::json::exception& e) {
-        throw Error(ErrorKind::input, fmt::format("is no pairs.json: {}", e.what()), path);
+    } catch (const nlohmann::json::exception&) {
+        throw Error(ErrorKind::input, "is damaged, or not what `clvr pairs` writes", path);
     }
     if (views < 1 || frames < 1) throw Error(ErrorKind::input, "names no views", path);
     const auto there = [&](const std::string& name) {
