@@ -1,4 +1,4 @@
-// DICOM series: compressed pixels by GDCM, headers, grouping and order by clvr (ITK's series reader stretches the spacing over a gap).
+// DICOM series: compressed pixels by GDCM; headers, grouping and order by clvr.
 #include "host/io/volume/dicom/files.hpp"
 #include "host/io/volume/dicom/load.hpp"
 #include "host/io/volume/dicom/stacks.hpp"
