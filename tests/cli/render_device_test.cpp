@@ -253,7 +253,7 @@ TEST_F(Render, RefusesWithOneLineAndWritesNothing) {
         {{ball, "-o", "x.png", "--turntable", "-3"}, 2, "--turntable"},
         {{ball, "-o", "x.png", "--clip-box", "1,2,3"}, 2, "--clip-box"},
         {{ball, "-o", "x.png", "--eye", "1,2,3"}, 2, "target"},
-        {{ball, "-o", "x.jpg"}, 3, ".png"},
+        {{ball, "-o", "x.bmp"}, 3, ".png"},
         {{ball, "-o", "/none/of/this/x.png"}, 3, "/none/of/this/x.png"},
         {{"nowhere.raw", "-o", "x.png"}, 3, "nowhere.raw"},
         {{"short_24x20x16_uint8.raw", "-o", "x.png"}, 3, "7680"},
