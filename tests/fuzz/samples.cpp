@@ -47,13 +47,19 @@ std::string exr_of(const std::vector<std::string>& channels) {
     return written([&](const std::string& path) { write_exr(frame_of(channels), path); });
 }
 
-Samples environment_samples() {
+Samples radiance_samples() {
     const std::string head = "#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n";
     std::string flat, runs;
     for (int i = 0; i < 12; ++i) flat += {static_cast<char>(i), static_cast<char>(2 * i), '\xff', '\x80'};
     for (int y = 0; y < 2; ++y)
         runs += std::string("\2\2\0\11", 4) + "\x89\x10" + std::string("\4abcd\x85\x07", 7) + "\x89\x20" + "\x89\x81";
-    return {{"flat", head + "-Y 2 +X 6\n" + flat}, {"runs", head + "-Y 2 +X 9\n" + runs}, {"exr", exr_of({"R", "G", "B"})}};
+    return {{"flat", head + "-Y 2 +X 6\n" + flat}, {"runs", head + "-Y 2 +X 9\n" + runs}};
+}
+
+Samples environment_samples() {
+    Samples samples = radiance_samples();
+    samples.push_back({"exr", exr_of({"R", "G", "B"})});
+    return samples;
 }
 
 /// All that a scene may say.
@@ -141,7 +147,7 @@ const std::map<std::string, Samples (*)()>& other_samples() {
                              })}};
          }},
         {"environment", environment_samples},
-        {"radiance", environment_samples},
+        {"radiance", radiance_samples},
         {"pfm",
          [] {
              return Samples{{"grey", "Pf\n2 2\n-1.0\n0123456789abcdef"}, {"rgb", "PF\n1 1\n1.0\n0123456789ab"}};

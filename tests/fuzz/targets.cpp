@@ -210,7 +210,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
         {"tiff", {"a.tif"}, volume<tiff>},
         {"slices", {"stack/8", "stack/9", "stack/10"}, volume<folder>, ErrorKind::input, "*_folder"},
         {"dicom", {"series/0", "series/1", "series/2"}, dicom},
-        {"raw", {"a.raw", "a.json"}, volume<read_raw>},
+        {"raw", {"a.raw", "a.json"}, volume<read_raw>, ErrorKind::input, "-"}, // the formats' own say all in the file's name
         {"exr", {"a.exr"}, exr},
         {"png", {"a.png"}, picture<read_png>},
         {"png_slice", {"a.png"}, volume<png_slice>},

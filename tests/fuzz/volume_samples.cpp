@@ -83,6 +83,15 @@ const std::map<std::string, Samples (*)()>& further_samples() {
                  {"sixteen", png_file(3, 2, 16, PNG_COLOR_TYPE_GRAY, "abcdefghijkl", {}, true)},
                  {"palette", png_file(3, 2, 8, PNG_COLOR_TYPE_PALETTE, std::string("\0\1\0\1\0\1", 6), std::string("\0\0\0\7\7\7", 6))}};
          }},
+        {"jpeg_slice",
+         [] {
+             Frame grey;
+             grey.width = 9, grey.height = 8;
+             for (const char* name : {"R", "G", "B"}) grey.channel(name).assign(grey.pixels(), 0.5f);
+             const Folder folder;
+             write_jpeg(grey, {}, folder / "a.jpg");
+             return Samples{{"grey", read(folder / "a.jpg")}};
+         }},
         {"hdf5",
          [] {
              return Samples{{"minc", with_writer([](const std::string& path, const Sample& s) { write_minc(path, s); })}};

@@ -182,5 +182,17 @@ TEST(ExrFrameTest, AFailedWriteLeavesNothing) {
     EXPECT_EQ(folder.entries(), 0u);
 }
 
+TEST(ExrFrameTest, AnAttributeWhoseSizeIsNotTrueIsRefusedBeforeOpenExrBelievesIt) {
+    const test::Folder folder;
+    write_exr(test::noise(3, 2, {"R", "G", "B"}), folder / "a.exr");
+    const std::string sound = test::bytes_of(folder / "a.exr");
+    for (const std::string& name : {std::string("channels\0chlist\0", 16), std::string("dataWindow\0box2i\0", 17)}) {
+        std::string damaged = sound;
+        damaged.at(sound.find(name) + name.size()) ^= 1; // the size stands behind name and type
+        test::put(folder / "b.exr", damaged);
+        EXPECT_THAT(test::error_of([&] { read_exr(folder / "b.exr"); }).line(), ::testing::HasSubstr("its header says"));
+    }
+}
+
 } // namespace
 } // namespace clvr
