@@ -1,5 +1,6 @@
 #include "host/io/file_roles.hpp"
 #include "host/io/atomic_file.hpp"
+#include "host/io/volume/dataset_path.hpp"
 #include "runtime/error.hpp"
 
 #include <filesystem>
@@ -67,10 +68,7 @@ bool is_printed_to(const Identity& file) {
 } // namespace
 
 void will_read(const std::string& path, const std::string& name) {
-    std::error_code failed;
-    if (const std::size_t inside = path.find(":/"); inside != path.npos && !fs::exists(path, failed))
-        return will_read(path.substr(0, inside), name); // FILE:/path/of/dataset
-    const auto file = identity_of(path);
+    const auto file = identity_of(split_dataset_path(path).file);
     if (!file) return;
     const Named input{path, name};
     Roles& all = roles();
