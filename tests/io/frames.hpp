@@ -2,6 +2,7 @@
 #pragma once
 #include "host/frame/frame.hpp"
 #include "runtime/error.hpp"
+#include "tests/io/folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,23 +12,6 @@
 #include <string>
 
 namespace clvr::test {
-
-/// A fresh folder, removed with all in it at the end of the test.
-class Folder {
-public:
-    Folder() {
-        std::string pattern = (std::filesystem::temp_directory_path() / "clvr-frames-XXXXXX").string();
-        path_ = mkdtemp(pattern.data());
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-    std::size_t entries() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
-    }
-
-private:
-    std::filesystem::path path_;
-};
 
 inline std::string bytes_of(const std::string& path) {
     std::ifstream in(path, std::ios::binary);

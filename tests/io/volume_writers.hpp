@@ -2,6 +2,7 @@
 #pragma once
 #include "host/volume/geometry.hpp"
 #include "runtime/error.hpp"
+#include "tests/io/folder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,24 +20,6 @@
 #include <zlib.h>
 
 namespace clvr::test {
-
-/// A folder of its own, removed at the end.
-class Folder {
-public:
-    Folder() {
-        static int count = 0;
-        path_ = std::filesystem::temp_directory_path() / fmt::format("clvr_io_{}_{}", getpid(), count++);
-        std::filesystem::create_directories(path_);
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-    std::string path() const { return path_.string(); }
-
-private:
-    std::filesystem::path path_;
-};
 
 inline std::string write(const std::string& path, const std::string& bytes) {
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
