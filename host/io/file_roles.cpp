@@ -36,9 +36,10 @@ std::optional<Identity> identity_of(const std::string& path) {
     return Identity{0, 0, fs::absolute(place, failed).lexically_normal().string()};
 }
 
+/// `said` is what the user or a file called it: the path of the file, or FILE:/path/of/dataset.
 struct Named {
-    std::string path, name;
-    std::string text() const { return name.empty() ? path : fmt::format("{} ({})", path, name); }
+    std::string file, said, name;
+    std::string text() const { return name.empty() ? said : fmt::format("{} ({})", said, name); }
 };
 
 struct Roles {
@@ -51,8 +52,17 @@ Roles& roles() {
     return all;
 }
 
+/// What `among` knows of the file. A file that was removed or replaced since it was named is forgotten: its inode may be another file's now.
+const Named* find(std::map<Identity, Named>& among, const Identity& file) {
+    const auto found = among.find(file);
+    if (found == among.end()) return nullptr;
+    if (identity_of(found->second.file) == file) return &found->second;
+    among.erase(found);
+    return nullptr;
+}
+
 [[noreturn]] void refuse(const Named& output, const std::string& is) {
-    throw Error(ErrorKind::usage, fmt::format("{} is {}, which must not be overwritten; choose another name", output.path, is),
+    throw Error(ErrorKind::usage, fmt::format("{} is {}, which must not be overwritten; choose another name", output.said, is),
                 output.name);
 }
 
@@ -68,28 +78,26 @@ bool is_printed_to(const Identity& file) {
 } // namespace
 
 void will_read(const std::string& path, const std::string& name) {
-    const auto file = identity_of(split_dataset_path(path).file);
+    const Named input{split_dataset_path(path).file, path, name};
+    const auto file = identity_of(input.file);
     if (!file) return;
-    const Named input{path, name};
     Roles& all = roles();
     const std::lock_guard lock(all.mutex);
-    const auto output = all.written.find(*file);
-    if (output != all.written.end()) refuse(output->second, "the input " + input.text());
-    if (!name.empty() && is_printed_to(*file)) refuse({"standard output", "clvr"}, "the input " + input.text());
+    if (const Named* output = find(all.written, *file)) refuse(*output, "the input " + input.text());
+    if (!name.empty() && is_printed_to(*file)) refuse({"", "standard output", "clvr"}, "the input " + input.text());
     all.read.emplace(*file, input);
 }
 
 void will_write(const std::string& path, const std::string& name) {
     const auto file = identity_of(path);
     if (!file) return;
-    const Named output{path, name};
+    const Named output{path, path, name};
     Roles& all = roles();
     const std::lock_guard lock(all.mutex);
-    const auto input = all.read.find(*file);
-    if (input != all.read.end()) refuse(output, "the input " + input->second.text());
+    if (const Named* input = find(all.read, *file)) refuse(output, "the input " + input->text());
     if (is_printed_to(*file)) refuse(output, "the file that standard output goes to");
-    const auto [other, is_new] = all.written.emplace(*file, output);
-    if (!is_new) refuse(output, "the output " + other->second.text() + ", too");
+    if (const Named* other = find(all.written, *file)) refuse(output, "the output " + other->text() + ", too");
+    all.written.emplace(*file, output);
 }
 
 void forget_file_roles() {

@@ -42,6 +42,10 @@ protected:
         words.insert(words.end(), more.begin(), more.end());
         return run(words);
     }
+    void succeeds(const std::string& to) const {
+        const Outcome o = experiment(to);
+        ASSERT_EQ(o.exit_code, 0) << o.err;
+    }
 };
 
 TEST_F(Experiment, RunsAndIsGoneOnWith) {
@@ -76,11 +80,11 @@ TEST_F(Experiment, RunsAndIsGoneOnWith) {
 
     // Whatever is lost is made again with the same bits, and nothing else. What says how long it took is not.
     std::filesystem::remove(folder.path() / "e/report.html");
-    ASSERT_EQ(experiment("e").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(succeeds("e"));
     EXPECT_EQ(contents("e"), before);
     for (const char* lost : {"test/view_0001_noisy_2.exr", "evaluation.json", "model.safetensors"})
         std::filesystem::remove(folder.path() / "e" / lost);
-    ASSERT_EQ(experiment("e").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(succeeds("e"));
     EXPECT_EQ(untimed(contents("e")), untimed(before));
 
     const Outcome other = experiment("e", {"--seed", "1"});
@@ -95,7 +99,7 @@ TEST_F(Experiment, RunsAndIsGoneOnWith) {
         kill(child.pid(), SIGINT);
         child.wait();
     }
-    ASSERT_EQ(experiment("i").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(succeeds("i"));
     EXPECT_EQ(untimed(contents("i")), untimed(before));
 }
 
@@ -116,7 +120,7 @@ TEST_F(Experiment, PlansWithoutWriting) {
     EXPECT_NEAR(plan["seconds"].get<double>(), seconds, 1e-9);
     EXPECT_GT(plan["device_bytes"].get<double>(), 2 * 4 * 16 * 16 * 13);
     // The files of the pairs are at most as large as it says.
-    ASSERT_EQ(experiment("d").exit_code, 0);
+    ASSERT_NO_FATAL_FAILURE(succeeds("d"));
     std::uintmax_t bytes = 0;
     for (const auto& [name, content] : contents("d")) bytes += content.size();
     EXPECT_LT(bytes, plan["disk_bytes"].get<std::uintmax_t>());

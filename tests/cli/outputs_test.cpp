@@ -202,6 +202,18 @@ TEST_F(FileRoles, FilesThatAreNotThereYetAreKnownByTheirPlace) {
     EXPECT_THROW(will_write(path("dangling"), "--report"), Error);
 }
 
+TEST_F(FileRoles, AnotherFileMayHaveTheInodeOfOneThatIsGone) {
+    folder.write("written", content);
+    fs::create_hard_link(path("written"), path("new"));
+    will_write(path("written"), "-o");
+    fs::remove(path("written")); // "new" stands for a file that got the freed inode
+    EXPECT_NO_THROW(will_read(path("new")));
+    fs::create_hard_link(path("new"), path("newer"));
+    fs::remove(path("new"));
+    EXPECT_NO_THROW(will_write(path("newer"), "-o"));
+    EXPECT_THROW(will_read(path("newer")), Error);
+}
+
 TEST_F(FileRoles, PartsOfFilesAreTheirFiles) {
     folder.write("cells.h5", content);
     will_write(path("cells.h5"), "--save-scene");
