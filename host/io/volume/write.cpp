@@ -1,5 +1,6 @@
 // NIfTI-1 files of volumes.
 #include "host/io/atomic_file.hpp"
+#include "host/io/volume/format.hpp"
 #include "host/io/volume/volume_file.hpp"
 #include "runtime/error.hpp"
 
@@ -62,10 +63,6 @@ std::array<unsigned char, header_bytes> header_of(const Voxels& v) {
     }
     std::memcpy(h.data() + 344, "n+1", 4);
     return h;
-}
-
-bool ends_with(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
 void write_compressed(const std::string& path, const void* header, const std::vector<unsigned char>& bytes) {
