@@ -1,4 +1,5 @@
 #include "host/render/device_volume.hpp"
+#include "host/render/coarse_opacity.hpp"
 
 #include <string>
 
@@ -66,6 +67,18 @@ DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayou
                 {"CLVR_VOXEL_BITS", std::to_string(8 * voxel_bytes(type))},
                 {"CLVR_VOXEL_SIGNED", type == VoxelType::i8 || type == VoxelType::i16 ? "1" : "0"},
                 {"CLVR_POOLS", std::to_string(layout.pools)}};
+
+    std::vector<std::uint32_t> visible(c.table.opacity.size() + 1, 0);
+    for (std::size_t e = 0; e < c.table.opacity.size(); ++e) visible[e + 1] = visible[e] + (c.table.opacity[e] > 0 ? 1 : 0);
+    const Buffer visible_before = device.upload(visible, "visible table entries");
+    const Range cells{static_cast<std::size_t>(params.coarse.x), static_cast<std::size_t>(params.coarse.y),
+                      static_cast<std::size_t>(params.coarse.z)};
+    coarse_ = device.buffer(cells.x * cells.y * cells.z * sizeof(float), "coarse opacity");
+    Kernel kernel = device.kernel("volume/coarse_opacity", defines_);
+    device.launch(kernel, cells, kernel.group(packet_group(device, 1)), {}, arguments(), visible_before, coarse_);
+    std::vector<float> mean = device.download<float>(coarse_, cells.x * cells.y * cells.z);
+    mark_distances(mean, params.coarse);
+    device.write(coarse_, mean.data(), mean.size() * sizeof(float));
 }
 
 BufferList DeviceVolume::arguments() const {

@@ -26,9 +26,11 @@ public:
     const Defines& defines() const { return defines_; }
     /// VOLUME_ARGS, in order.
     BufferList arguments() const;
+    /// [VolumeParams::coarse] mean opacity, or minus the distance to the next cell that has some (coarse_opacity.hpp).
+    const Buffer& coarse_opacity() const { return coarse_; }
 
 private:
-    Buffer params_, majorants_, opacity_, color_, offset_, pool_;
+    Buffer params_, majorants_, opacity_, color_, offset_, pool_, coarse_;
     std::vector<Buffer> voxels_;
     Defines defines_;
 };

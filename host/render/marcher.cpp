@@ -24,8 +24,8 @@ void Marcher::run(std::uint32_t first_pixel, std::uint32_t pixels, std::vector<f
     const Range group = kernel_.group(packet_group(device_, width_));
     for (std::uint32_t done = 0; done < pixels; done += at_once_) {
         const std::uint32_t n = std::min(at_once_, pixels - done);
-        device_.launch(kernel_, {(n + width_ - 1) / width_}, group, {}, volume_.arguments(), light_.render(), first_pixel + done, n,
-                       at_once_, planes_);
+        device_.launch(kernel_, {(n + width_ - 1) / width_}, group, {}, volume_.arguments(), volume_.coarse_opacity(), light_.render(),
+                       first_pixel + done, n, at_once_, planes_);
         for (int p = 0; p < march_planes(march_); ++p)
             device_.read(planes_, &planes[p * stride + offset + done], n * 4, std::size_t{4} * p * at_once_);
     }

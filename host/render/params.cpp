@@ -50,6 +50,16 @@ void set_key_light(shared::RenderParams& p, const Light& light, double camera_az
     p.head_irradiance = rounded({head, head, head});
 }
 
+/// Cells of mean opacity: of 4 voxels' edge, of more while there were more than 2^22; a brick holds whole ones.
+shared::int4 coarse_cells(const Int3& dims, int brick_log2_edge) {
+    constexpr std::int64_t most_cells = 1 << 22;
+    for (int log2_edge = std::min(2, brick_log2_edge);; ++log2_edge) {
+        const auto cells = [&](int a) { return (std::max(dims[a] - 2, 0) >> log2_edge) + 1; };
+        if (log2_edge == brick_log2_edge || std::int64_t{cells(0)} * cells(1) * cells(2) <= most_cells)
+            return {cells(0), cells(1), cells(2), log2_edge};
+    }
+}
+
 } // namespace
 
 double resolved_extinction(const Scene& scene, const Voxels& v) {
@@ -72,6 +82,7 @@ shared::VolumeParams volume_params(const Scene& scene, const Voxels& v, const Ma
     p.last = {last(0), last(1), last(2), 0};
     p.cells = {grid.cells[0], grid.cells[1], grid.cells[2], grid.log2_edge};
     p.bricks = {layout.bricks[0], layout.bricks[1], layout.bricks[2], layout.log2_edge};
+    p.coarse = coarse_cells(v.dims, layout.log2_edge);
     const IndexBox box = clip_box_index(scene, v);
     const TableIndex index(table);
     p.box_low = rounded(box.low, index.first);

@@ -3,7 +3,8 @@
 // Samples lie on the ray's own lattice t0 + (k + 1/2) step; cells without extinction are skipped in k, so skipping never moves the lattice.
 // Weights w = T (1 - exp(-sigma step)); a ray ends at T < 1e-4. Sums run over CLVR_RAYS fixed positions in the pixel and are divided once.
 #include "lib/camera.clh"
-#include "lib/packet.clh"
+#include "lib/paths.clh"
+#include "lib/seek.clh"
 
 #ifndef CLVR_RAYS
 #define CLVR_RAYS 4
@@ -35,30 +36,8 @@ static inline Vec3 facing_normal(const Volume* vol, Vec3 p, Vec3 dir, vfloat* st
     return scaled(g, v_select(v_gt(inner3(g, dir), (vfloat)(0.0f)), -s, s));
 }
 
-// Moves the lanes of *active to their first lattice point (from *k on) in a cell with extinction; clears lanes that leave.
-static inline Vec3 seek_visible(const Volume* vol, const Ray* r, vfloat t0, vfloat t1, float step, vint* k, vmask* active, vfloat* t, Int3* i) {
-    Vec3 p;
-    vmask seeking = *active;
-    do {
-        *t = fma(v_float(*k) + 0.5f, (vfloat)(step), t0);
-        *active &= v_lt(*t, t1);
-        seeking &= *active;
-        p = along(r->o, r->d, v_select(*active, *t, t0));
-        *i = clamp_position(vol->p, &p);
-        int log2_edge = vol->p->cells.w;
-        Int3 c = {i->x >> log2_edge, i->y >> log2_edge, i->z >> log2_edge};
-        seeking &= v_le(v_gather(vol->majorant, cell_index(vol->p, c)), (vfloat)(0.0f));
-        if (v_any(seeking)) {
-            Vec3 e = exits(vol->p, r, c);
-            vfloat leave = v_min(v_min(v_min(e.x, e.y), e.z), t1);
-            vint next = v_int(floor(v_max((leave - t0) / step - 0.5f, (vfloat)(0.0f)))); // at or before the first point behind the face
-            *k = v_select(seeking, v_max(*k + 1, next), *k);
-        }
-    } while (v_any(seeking));
-    return p;
-}
 
-static inline void march_ray(const Volume* vol, __constant RenderParams* render, Vec3 pos_index, Vec3 dir_world, vmask lanes, MarchSums* sums) {
+static inline void march_ray(const Volume* vol, __global const float* coarse, __constant RenderParams* render, Vec3 pos_index, Vec3 dir_world, vmask lanes, MarchSums* sums) {
     Ray ray = make_ray(vol->p, pos_index, dir_world);
     float step = render->step;
     vfloat t0, t1, t, half_depth = (vfloat)(1.0f);
@@ -72,7 +51,7 @@ static inline void march_ray(const Volume* vol, __constant RenderParams* render,
     vint k = (vint)(0);
     for (;;) {
         Int3 i;
-        Vec3 p = seek_visible(vol, &ray, t0, t1, step, &k, &active, &t, &i);
+        Vec3 p = seek_visible(vol, coarse, &ray, t0, t1, step, &k, &active, &t, &i);
         if (!v_any(active)) break;
         vfloat stored = stored_value_in(vol, p, i), opacity = opacity_of(vol, stored);
         k += 1;
@@ -106,7 +85,7 @@ static inline void march_ray(const Volume* vol, __constant RenderParams* render,
 }
 
 // Writes planes of `stride` values at pixel - first_pixel. Features: albedo RGB, normal XYZ, depth, opacity, depth deviation, half depth. dvr, mip: R G B A.
-__kernel void march(VOLUME_ARGS, __constant RenderParams* render, uint first_pixel, uint pixels, uint stride, __global float* planes) {
+__kernel void march(VOLUME_ARGS, __global const float* coarse, __constant RenderParams* render, uint first_pixel, uint pixels, uint stride, __global float* planes) {
     VOLUME_HERE(vol);
     uint first = (uint)get_global_id(0) * CLVR_WIDTH;
     if (first >= pixels) return;
@@ -124,7 +103,7 @@ __kernel void march(VOLUME_ARGS, __constant RenderParams* render, uint first_pix
         float px = CLVR_RAYS == 1 ? 0.5f : fma((float)column, 0.25f, 0.125f), py = CLVR_RAYS == 1 ? 0.5f : fma((float)ray, 0.25f, 0.125f);
         Vec3 o, d;
         camera_ray(render, x + px, y + py, &o, &d);
-        march_ray(&vol, render, o, d, lanes, &s);
+        march_ray(&vol, coarse, render, o, d, lanes, &s);
     }
 #if CLVR_MARCH != 2
     float share = 1.0f / (float)CLVR_RAYS;

@@ -13,6 +13,7 @@
     CLVR_FIELD(VolumeParams, last)                                                                                                         \
     CLVR_FIELD(VolumeParams, cells)                                                                                                        \
     CLVR_FIELD(VolumeParams, bricks)                                                                                                       \
+    CLVR_FIELD(VolumeParams, coarse)                                                                                                       \
     CLVR_FIELD(VolumeParams, box_low)                                                                                                      \
     CLVR_FIELD(VolumeParams, box_high)                                                                                                     \
     CLVR_FIELD(VolumeParams, plane)                                                                                                        \

@@ -9,6 +9,7 @@ typedef struct VolumeParams {
     int4 last;           ///< xyz: greatest voxel index
     int4 cells;          ///< xyz: majorant cells; w: log2 of their edge
     int4 bricks;         ///< xyz: bricks; w: log2 of their edge
+    int4 coarse;         ///< xyz: cells of mean opacity; w: log2 of their edge
     float4 box_low;      ///< xyz: lower corner of the (clipped) volume [index]; w: stored value of table entry 0
     float4 box_high;     ///< xyz: upper corner [index]; w: table entries per stored unit
     float4 plane;        ///< clip plane in index space: xyz . p <= w stays; all 0 when there is none
@@ -20,7 +21,7 @@ typedef struct VolumeParams {
     int shading;         ///< 0 auto, 1 phase, 2 gradient
     int pad;
 } VolumeParams;
-CLVR_CHECK_SIZE(VolumeParams, 208);
+CLVR_CHECK_SIZE(VolumeParams, 224);
 
 CLVR_SHARED_END
 #endif
