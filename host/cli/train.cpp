@@ -22,7 +22,7 @@ struct Options {
     std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant", convolution = "direct";
     TrainerConfig trainer;
     int hidden = 20, kernel = 5;
-    bool resume = false, no_augment = false, plain = false, no_demodulation = false, no_opacity_weight = false;
+    bool resume = false, no_augment = false, plain = false, no_demodulation = false, no_opacity_weight = false, control_variate = false;
     DeviceOptions device;
 };
 
@@ -53,7 +53,9 @@ Model start_of(const Options& o) {
     if (!o.init.empty()) {
         for (const auto& [name, given] : {std::pair("--channels", &o.channels), {"--levels", &o.levels}})
             if (!given->empty()) throw Error(ErrorKind::usage, "is set by the model of --init; leave one of them out", name);
-        return read_model(o.init);
+        Model m = read_model(o.init);
+        if (o.control_variate) m.control_variate = true;
+        return m;
     }
     Model m = o.plain ? Model() : default_settings();
     if (!o.channels.empty()) m.channels = o.channels;
@@ -71,6 +73,7 @@ Model start_of(const Options& o) {
     m.kernel = o.kernel;
     if (o.no_demodulation) m.demodulation = false;
     if (o.no_opacity_weight) m.opacity_weight = false;
+    if (o.control_variate) m.control_variate = true;
     if (m.hidden < 1 || m.hidden > 256) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 256", m.hidden), "--hidden");
     if (m.kernel < 1 || m.kernel > 15 || m.kernel % 2 == 0)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected an odd number, 1 to 15", m.kernel), "--kernel");
@@ -184,6 +187,9 @@ void add_train_command(CLI::App& app) {
     c->add_flag("--plain", o->plain, "Without exposure, albedo floor and opacity weights: the reference's preprocessing")->group("Model");
     c->add_flag("--no-demodulation", o->no_demodulation, "Without dividing the radiance by the albedo")->group("Model");
     c->add_flag("--no-opacity-weight", o->no_opacity_weight, "Without weights by opacity.A, which other renderers' files lack")
+        ->group("Model");
+    c->add_flag("--control-variate", o->control_variate,
+                "Take the light that is known without noise off before the filter and add it after: frames with light.* channels")
         ->group("Model");
     c->footer("Examples:\n"
               "  clvr train pairs -o mine.safetensors --init default --patch 128 --batch 8 --epochs 40\n"

@@ -11,6 +11,8 @@ namespace clvr {
 namespace {
 
 bool is_radiance(const std::string& name) { return name == "R" || name == "G" || name == "B"; }
+/// 0, 1, 2 for known.R, known.G, known.B; else -1.
+int known_colour(const std::string& name) { return name == "known.R" ? 0 : name == "known.G" ? 1 : name == "known.B" ? 2 : -1; }
 const std::string noise_channel = "noise"; // (samples per pixel)^(-1/2), from the frame's attribute
 
 float noise_level(const Frame& frame) {
@@ -21,7 +23,7 @@ float noise_level(const Frame& frame) {
 } // namespace
 
 ChannelPlan::ChannelPlan(const Model& model, bool with_target)
-    : exposure_(model.exposure), weighted_(model.opacity_weight), albedo_floor_(model.albedo_floor) {
+    : exposure_(model.exposure), weighted_(model.opacity_weight), known_(model.control_variate), albedo_floor_(model.albedo_floor) {
     const auto has = [&](const char* name) {
         return std::find(model.channels.begin(), model.channels.end(), name) != model.channels.end();
     };
@@ -32,11 +34,12 @@ ChannelPlan::ChannelPlan(const Model& model, bool with_target)
         if (plane(name) < 0) planes_.push_back(name);
     };
     if (weighted_) add("opacity.A"); // free of noise, which A of few paths is not
+    if (known_) planes_.insert(planes_.end(), {"known.R", "known.G", "known.B"});
     for (const auto& name : model.channels) {
         add(name);
-        const auto kind = is_radiance(name)               ? shared::CLVR_CHANNEL_RADIANCE
-                          : name.rfind("normal.", 0) == 0 ? shared::CLVR_CHANNEL_NORMAL
-                                                          : shared::CLVR_CHANNEL_PLAIN;
+        const auto kind = is_radiance(name) || known_colour(name) >= 0 ? shared::CLVR_CHANNEL_RADIANCE
+                          : name.rfind("normal.", 0) == 0              ? shared::CLVR_CHANNEL_NORMAL
+                                                                       : shared::CLVR_CHANNEL_PLAIN;
         channels_.push_back({plane(name), kind});
     }
     if (with_target) planes_.insert(planes_.end(), {"target.R", "target.G", "target.B"});
@@ -54,6 +57,7 @@ shared::SourceParams ChannelPlan::params(double exposure) const {
     p.albedo = demodulate_ ? plane("albedo.R") : -1;
     p.opacity = weighted_ ? plane("opacity.A") : -1;
     p.target = plane("target.R");
+    p.known = known_ ? plane("known.R") : -1;
     p.channels = static_cast<int>(channels_.size());
     p.exposure = exposure_ ? static_cast<float>(exposure) : 1.0f;
     p.ceiling = exposure_ ? ceiling : 0x1p126f;
@@ -65,8 +69,13 @@ std::vector<std::string> ChannelPlan::missing(const Frame& frame) const {
     std::vector<std::string> names;
     for (const auto& name : planes_) {
         if (name.rfind("target.", 0) == 0) continue;
+        if (known_colour(name) >= 0) {
+            for (const auto& read : known_light_channels())
+                if (!frame.has(read) && std::find(names.begin(), names.end(), read) == names.end()) names.push_back(read);
+            continue;
+        }
         const bool there = name == noise_channel ? frame.attributes.count("clvr.spp") != 0 : frame.has(name);
-        if (!there) names.push_back(name);
+        if (!there && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
     return names;
 }
@@ -91,7 +100,13 @@ BeautyWithoutBackground::BeautyWithoutBackground(const Frame& frame, const std::
     if (background && alpha) background_ = background->data(), alpha_ = alpha->data();
 }
 
-std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const Region& region, std::vector<float>& planes) const {
+std::optional<KnownLight> ChannelPlan::known_light(const Frame& frame) const {
+    if (std::none_of(planes_.begin(), planes_.end(), [](const std::string& name) { return known_colour(name) >= 0; })) return std::nullopt;
+    return KnownLight(frame);
+}
+
+std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const Region& region, const std::optional<KnownLight>& known,
+                                std::vector<float>& planes) const {
     std::size_t repaired = 0;
     planes.reserve(planes.size() + planes_.size() * region.pixels());
     for (const auto& name : planes_) {
@@ -106,7 +121,9 @@ std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const R
                     planes.push_back(v);
                 }
         };
-        if (name == noise_channel)
+        if (const int c = known_colour(name); c >= 0)
+            add([&known, c](std::size_t i) { return (*known)(c, i); });
+        else if (name == noise_channel)
             add([noise = noise_level(frame)](std::size_t) { return noise; });
         else if (is_radiance(colour))
             add(BeautyWithoutBackground(from, colour));

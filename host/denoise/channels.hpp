@@ -1,10 +1,12 @@
 // From a frame's named channels to the planes that the device reads.
 #pragma once
+#include "host/denoise/known_light.hpp"
 #include "host/denoise/model.hpp"
 #include "host/frame/frame.hpp"
 #include "kernels/shared/denoise_params.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,14 +29,17 @@ public:
     std::vector<std::string> missing(const Frame& frame) const;
     /// Throws Error{input} naming them, and what the frame has.
     void check(const Frame& frame) const;
+    /// What gather() needs to know of the whole frame: nothing where the model reads no known light.
+    std::optional<KnownLight> known_light(const Frame& frame) const;
     /// Appends the planes of a region, beauty without background, to `planes`; returns how many values were not finite and became 0.
-    /// `target`: the frame of the target planes, or null.
-    std::size_t gather(const Frame& frame, const Frame* target, const Region& region, std::vector<float>& planes) const;
+    /// `target`: the frame of the target planes, or null. `known`: known_light(frame).
+    std::size_t gather(const Frame& frame, const Frame* target, const Region& region, const std::optional<KnownLight>& known,
+                       std::vector<float>& planes) const;
 
 private:
     std::vector<std::string> planes_;
     std::vector<std::array<std::int32_t, 2>> channels_;
-    bool exposure_, demodulate_, weighted_;
+    bool exposure_, demodulate_, weighted_, known_;
     float albedo_floor_;
 
     int plane(const std::string& name) const; // its number, -1: not among them

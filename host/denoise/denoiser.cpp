@@ -88,11 +88,11 @@ struct Denoiser::State {
 
     /// Denoises a tile: copies what lies in `inner` to the frame's channels named so, one per plane of NeuralGrid::result and then of
     /// outputs().
-    void denoise_tile(const Frame& frame, const Region& inner, const shared::SourceParams& params, bool show,
-                      const std::vector<std::vector<float>*>& results, const std::vector<std::vector<float>*>& outputs) {
+    void denoise_tile(const Frame& frame, const std::optional<KnownLight>& known, const Region& inner, const shared::SourceParams& params,
+                      bool show, const std::vector<std::vector<float>*>& results, const std::vector<std::vector<float>*>& outputs) {
         const Region outer = tiling.outer(inner, frame.width, frame.height);
         std::vector<float> planes;
-        repaired += plan.gather(frame, nullptr, outer, planes);
+        repaired += plan.gather(frame, nullptr, outer, known, planes);
         NeuralGrid& g = grid_of({outer.width, outer.height, 1, show});
         const Buffer source = device.upload(planes, "frame channels");
         g.assemble(source, outer.width, outer.height, params, 0, 0, 0, 0);
@@ -172,10 +172,11 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     for (int l = 1; l < levels; ++l) outputs.push_back(view.weights ? &done.channel(fmt::format("weight.{}", l)) : nullptr);
 
     const shared::SourceParams params = s.plan.params(s.model.exposure ? exposure_of(frame) : 1);
+    const std::optional<KnownLight> known = s.plan.known_light(frame);
     const Region tile = s.tile(frame.width, frame.height, view.levels);
     for (int y = 0; y < frame.height; y += tile.height)
         for (int x = 0; x < frame.width; x += tile.width)
-            s.denoise_tile(frame, {x, y, std::min(tile.width, frame.width - x), std::min(tile.height, frame.height - y)}, params,
+            s.denoise_tile(frame, known, {x, y, std::min(tile.width, frame.width - x), std::min(tile.height, frame.height - y)}, params,
                            view.levels, results, outputs);
 
     if (frame.has("opacity.A") && frame.has("A")) { // the path's alpha is as noisy as its colour

@@ -16,7 +16,8 @@ namespace {
 const std::vector<std::string>& known_channels() {
     static const std::vector<std::string> names{"R",          "G",         "B",        "A",          "albedo.R",   "albedo.G",
                                                 "albedo.B",   "normal.X",  "normal.Y", "normal.Z",   "depth.Z",    "depth.deviation",
-                                                "depth.half", "opacity.A", "noise",    "variance.R", "variance.G", "variance.B"};
+                                                "depth.half", "opacity.A", "noise",    "variance.R", "variance.G", "variance.B",
+                                                "known.R",    "known.G",   "known.B"};
     return names;
 }
 

@@ -16,7 +16,7 @@ struct Model {
     };
 
     /// Input channels in order, by their names in frames (DESIGN.md "Frames"). R, G, B (premultiplied beauty) are tone mapped, normal.*
-    /// becomes (n+1)/2, "noise" is (samples per pixel)^(-1/2), the rest is taken as it is.
+    /// becomes (n+1)/2, "noise" is (samples per pixel)^(-1/2), "known.R" ... (KnownLight) are tone mapped, the rest is taken as it is.
     std::vector<std::string> channels;
     int hidden = 20;
     int kernel = 5; ///< odd
@@ -26,6 +26,7 @@ struct Model {
     bool exposure = false;                    ///< radiance scaled by 0.18 / exp2(mean log2 luminance), clamped at 32 (DESIGN.md "Denoiser")
     float albedo_floor = 0x1p-20f;            ///< radiance is divided and remultiplied by max(albedo, this)
     bool demodulation = true;                 ///< where the channels have the three of albedo; false: radiance is taken as it is
+    bool control_variate = false;             ///< what is known of the light (known_light.hpp) is taken off before the grids, added after
     bool opacity_weight = false;              ///< a pixel counts in the splat by its opacity.A, and the output is times that
     std::map<std::string, std::string> notes; ///< further metadata ("clvr.training", ...): how it was made; kept when the file is copied
 

@@ -111,8 +111,8 @@ shared::DenoiseParams NeuralGrid::params_of(const Device& device, const Model& m
 
 std::size_t NeuralGrid::bytes(const Device& device, const Model& model, const BatchShape& b) {
     const shared::DenoiseParams p = params_of(device, model, b.width, b.height);
-    const std::size_t planes =
-        model.channels.size() + model.hidden + model.outputs() + 3 + (b.show ? 3 * p.levels : 0) + (b.target ? 3 : 0);
+    const std::size_t planes = model.channels.size() + model.hidden + model.outputs() + 3 + (b.show ? 3 * p.levels : 0) +
+                               (b.target ? 3 : 0) + (model.control_variate ? 3 : 0);
     return b.images * (planes * p.plane * 4 + std::size_t{32} * b.width * b.height + std::size_t{16} * p.cells);
 }
 
@@ -121,7 +121,8 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
       params_(params_of(device, model, shape.width, shape.height)) {
     const std::string width = std::to_string(pixel_width(device_));
     assemble_ = device_.kernel("denoise/assemble", {{"CLVR_WIDTH", width}});
-    slice_ = device_.kernel("denoise/slice", {{"CLVR_WIDTH", width}, {"CLVR_SHOW", shape.show ? "1" : "0"}});
+    slice_ = device_.kernel(
+        "denoise/slice", {{"CLVR_WIDTH", width}, {"CLVR_SHOW", shape.show ? "1" : "0"}, {"CLVR_KNOWN", model.control_variate ? "1" : "0"}});
     for (int l = 0; l < levels_; ++l) {
         bins_.push_back(is_cpu(device_) ? params_.level[l].depth : 8);
         bins_.back() = std::min(device_.tunable("splat_bins", bins_.back()), params_.level[l].depth);
@@ -143,11 +144,9 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
         Buffer& buffer;
         int channels;
         const char* label;
-    } planes[] = {{input_, channels_, "network input"},
-                  {hidden_, model.hidden, "hidden layer"},
-                  {outputs_, model.outputs(), "guides"},
-                  {result_, results, "denoised picture"},
-                  {target_, shape.target ? 3 : 0, "target"}};
+    } planes[] = {{input_, channels_, "network input"},      {hidden_, model.hidden, "hidden layer"},
+                  {outputs_, model.outputs(), "guides"},     {result_, results, "denoised picture"},
+                  {target_, shape.target ? 3 : 0, "target"}, {known_, model.control_variate ? 3 : 0, "known light"}};
     for (auto& [buffer, channels, label] : planes) {
         buffer = device_.buffer(plane_floats(channels) * 4 + 64 /* rows are read 16 pixels at once */, label);
         device_.fill(buffer, 0);
@@ -196,7 +195,7 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
     // Turned images are read down their columns: 16 rows at once find what they share in the first-level cache (10 % on PoCL).
     device_.launch(assemble_, pixel_items(1), is_cpu(device_) ? Range{1, 16} : pixel_group(),
                    {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, params, source, size,
-                   from, channel_list_, input_, splatted_, remodulation_, target_);
+                   from, channel_list_, input_, splatted_, remodulation_, target_, known_);
 }
 
 void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {
@@ -213,7 +212,7 @@ void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_im
 void NeuralGrid::slice(int images) {
     device_.launch(slice_, pixel_items(images), pixel_group(),
                    {static_cast<double>(params_.width) * params_.height * images * (48 + 128 * levels_), 0}, params_buffer_, outputs_,
-                   cells_, remodulation_, result_);
+                   cells_, remodulation_, known_, result_);
 }
 
 void NeuralGrid::guide_network(int images) {

@@ -79,6 +79,7 @@ public:
     const Buffer& cells() const { return cells_; }               ///< float4 a cell: mean colour, weight
     const Buffer& result() const { return result_; }             ///< planes, 3, or 3 + 3 levels with `show`
     const Buffer& target() const { return target_; }             ///< planes, 3
+    const Buffer& known() const { return known_; }               ///< planes, 3: the known light of a model that takes it off
 
     /// The stages alone: forward() is guide_network() and then grids().
     void guide_network(int images);
@@ -104,7 +105,7 @@ private:
     std::vector<Kernel> splat_, sum_;
     std::vector<int> bins_;
     Convolution to_hidden_, to_outputs_;
-    Buffer params_buffer_, channel_list_, input_, hidden_, outputs_, splatted_, remodulation_, cells_, result_, target_;
+    Buffer params_buffer_, channel_list_, input_, hidden_, outputs_, splatted_, remodulation_, cells_, result_, target_, known_;
 };
 
 } // namespace clvr

@@ -50,7 +50,8 @@ BrickLayout device_layout(const Device& device, const Classified& c) {
     return brick_layout(*c.voxels, *c.grid, c.majorants, log2_edge, device.max_alloc_bytes());
 }
 
-DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& params) {
+DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& params)
+    : host_params_(params) {
     params_ = device.upload(std::vector<shared::VolumeParams>{params}, "volume parameters");
     majorants_ = device.upload(c.majorants, "majorants");
     opacity_ = device.upload(c.table.opacity, "opacity table");

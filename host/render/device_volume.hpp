@@ -28,8 +28,10 @@ public:
     BufferList arguments() const;
     /// [VolumeParams::coarse] mean opacity, or minus the distance to the next cell that has some (coarse_opacity.hpp).
     const Buffer& coarse_opacity() const { return coarse_; }
+    const shared::VolumeParams& params() const { return host_params_; }
 
 private:
+    shared::VolumeParams host_params_;
     Buffer params_, majorants_, opacity_, color_, offset_, pool_, coarse_;
     std::vector<Buffer> voxels_;
     Defines defines_;

@@ -50,12 +50,12 @@ void set_key_light(shared::RenderParams& p, const Light& light, double camera_az
     p.head_irradiance = rounded({head, head, head});
 }
 
-/// Cells of mean opacity: of 4 voxels' edge, of more while there were more than 2^22; a brick holds whole ones.
+/// Cells of mean opacity: of 2 voxels' edge up to 2^18 of them, of 4 up to 2^22, else of more; a brick holds whole ones.
 shared::int4 coarse_cells(const Int3& dims, int brick_log2_edge) {
-    constexpr std::int64_t most_cells = 1 << 22;
-    for (int log2_edge = std::min(2, brick_log2_edge);; ++log2_edge) {
+    for (int log2_edge = 1;; ++log2_edge) {
+        const std::int64_t most_cells = log2_edge == 1 ? 1 << 18 : 1 << 22;
         const auto cells = [&](int a) { return (std::max(dims[a] - 2, 0) >> log2_edge) + 1; };
-        if (log2_edge == brick_log2_edge || std::int64_t{cells(0)} * cells(1) * cells(2) <= most_cells)
+        if (log2_edge >= brick_log2_edge || std::int64_t{cells(0)} * cells(1) * cells(2) <= most_cells)
             return {cells(0), cells(1), cells(2), log2_edge};
     }
 }

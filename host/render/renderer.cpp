@@ -77,6 +77,8 @@ struct Renderer::Worker {
     Device device;
     std::shared_ptr<const DeviceVolume> volume; // sub-devices of one context share it
     std::optional<LightTables> light;
+    std::optional<KeyLights> keys;       // of the view
+    std::shared_ptr<const SkyLight> sky; // of all views; shared as the volume is
     std::optional<PathTracer> tracer;
     std::optional<Marcher> marcher;
     bool compared = false; // with the others
@@ -103,7 +105,7 @@ Renderer::Renderer(std::vector<Device> devices, const PreparedVolume& volume, co
             const BrickLayout layout = device_layout(d, c);
             uploaded = std::make_shared<DeviceVolume>(d, c, layout, volume_params(scene, volume.voxels, volume.grid, c.table, layout));
         }
-        workers_[k] = std::make_unique<Worker>(Worker{d, uploaded, {}, {}, {}, false});
+        workers_[k] = std::make_unique<Worker>(Worker{d, uploaded, {}, {}, {}, {}, {}, false});
     });
     aim(scene.camera, scene.view);
 }
@@ -111,10 +113,10 @@ Renderer::Renderer(std::vector<Device> devices, const PreparedVolume& volume, co
 void Renderer::aim(const Camera& camera, int view) {
     scene_.camera = camera;
     scene_.view = view;
-    const shared::RenderParams params = render_params(scene_, volume_.voxels, resolve_view(scene_, outline_, steady_), environment_);
+    params_ = render_params(scene_, volume_.voxels, resolve_view(scene_, outline_, steady_), environment_);
     dealer_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
-        w.light.emplace(w.device, params, environment_);
+        w.light.emplace(w.device, params_, environment_);
         if (w.tracer) w.tracer->aim(*w.light);
     });
 }
@@ -245,18 +247,36 @@ std::vector<Dealer::Portion> Renderer::march_portions() const {
     return portions;
 }
 
+/// The key lights of this view, and at the first view the sky's light in the volume.
+void Renderer::light_features() {
+    if (!sky_) sky_ = split_sky(params_, environment_);
+    const std::vector<shared::KeyLight> keys = key_lights(params_, *sky_);
+    dealer_.each([&](std::size_t k) {
+        Worker& w = *workers_[k];
+        w.keys.emplace(w.device, keys);
+        for (std::size_t other = 0; other < k && !w.sky; ++other)
+            if (workers_[other] && workers_[other]->volume == w.volume) w.sky = workers_[other]->sky;
+        if (!w.sky) w.sky = std::make_shared<SkyLight>(w.device, *w.volume, *sky_);
+    });
+}
+
 void Renderer::march(Frame& frame, bool features, const RenderControl& control) {
-    static const std::vector<std::string> feature_names{"albedo.R", "albedo.G", "albedo.B",  "normal.X",        "normal.Y",
-                                                        "normal.Z", "depth.Z",  "opacity.A", "depth.deviation", "depth.half"};
+    static const std::vector<std::string> feature_names{
+        "albedo.R",        "albedo.G",   "albedo.B",    "normal.X",    "normal.Y",    "normal.Z",    "depth.Z",     "opacity.A",
+        "depth.deviation", "depth.half", "light.key.R", "light.key.G", "light.key.B", "light.sky.R", "light.sky.G", "light.sky.B"};
     static const std::vector<std::string> color_names{"R", "G", "B", "A"};
     const March kind = features ? March::features : scene_.mode == Mode::dvr ? March::dvr : March::mip;
     const auto& names = features ? feature_names : color_names;
     const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
 
     std::vector<float> planes(names.size() * numbers_);
+    if (features) light_features();
     dealer_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
-        w.marcher.emplace(w.device, *w.volume, *w.light, kind, scene_.feature_samples);
+        if (features)
+            w.marcher.emplace(w.device, *w.volume, *w.light, *w.keys, *w.sky, scene_.feature_samples);
+        else
+            w.marcher.emplace(w.device, *w.volume, *w.light, kind, scene_.feature_samples);
     });
     dealer_.deal(features ? "features" : "march", numbers_, 1, march_portions(),
                  [&](std::size_t k, std::uint32_t first, std::uint32_t count) {

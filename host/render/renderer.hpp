@@ -3,6 +3,7 @@
 #include "host/frame/frame.hpp"
 #include "host/render/environment.hpp"
 #include "host/render/scene.hpp"
+#include "host/render/sky_split.hpp"
 #include "host/volume/bricks.hpp"
 #include "runtime/dealer.hpp"
 #include "runtime/device.hpp"
@@ -11,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 namespace clvr {
@@ -69,6 +71,8 @@ private:
     Scene scene_;
     const PreparedVolume& volume_;
     EnvironmentTables environment_;
+    std::optional<SkySplit> sky_; // of the environment, once features were marched
+    shared::RenderParams params_;
     bool steady_;
     std::vector<Double3> outline_; // of what is visible, world space
     std::uint32_t numbers_;        // pixel numbers, in 4x4 blocks
@@ -78,6 +82,7 @@ private:
     bool trace_pass(int first_sample, int samples, const PixelSums& before, PixelSums& after, const RenderControl& control);
     void trace(Frame& frame, const RenderControl& control);
     std::vector<Dealer::Portion> march_portions() const;
+    void light_features();
     void march(Frame& frame, bool features, const RenderControl& control);
     void lay_background(Frame& frame);
 };

@@ -12,14 +12,14 @@ namespace clvr::selftest {
 /// pixel_hash of each golden scene (golden_scene), the denoised one's of golden_denoised, the rendered and denoised one's of
 /// golden_picture.
 inline const std::map<std::string, std::string> golden_hashes{
-    {"automatic", "1b6fe8327194affacfc7ad8f24bd9c827568424669319adbab1e6bc46399ae94"},
-    {"dvr", "630c0fab5082d8f623c4dc4e367c1797aa4a20a12c1f03da8070c1a70ee8e561"},
-    {"gradient", "89e636a8473708b7aa54558cbfd560d1df469f624e18e8d540593f7fb44519f4"},
+    {"automatic", "c2a4b0e609df7059bf1402f74e54281082c73a3ea4fb8869b69a45aa29b1e3f8"},
+    {"dvr", "a42f602b068eee1382788339324d13cd17927f126d2a250cc2ae87bf0974fd83"},
+    {"gradient", "e8ff84e9c27630de5956183abaf51cad2765acd2b5acad4faab8d1730ecef78c"},
     {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
-    {"phase", "b9254adc49eaad83a3aa70966e58d088530851c7839813693306fff17b27e608"},
+    {"phase", "161eec712a5d0be681c8c15520a6a2164ab966e4ee0f4c78d77c018e1dbc1389"},
 };
 inline const std::string golden_denoised_hash = "f96ec492ce7dc7c59752268c3ac332b6b87db09397b1cf84bb0eaa3f572694bf";
-inline const std::string golden_picture_hash = "59015e21d81622232ac6b683610fedf326d1b82c7eb1ecb3414eaa7ea1f5e6a7";
+inline const std::string golden_picture_hash = "dd4f430034ea071c6c158303fcadb57b295b5a14cc139b9df01dce44a3bee72d";
 
 /// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
 inline const std::array<std::pair<const char*, const char*>, 5> golden_functions{{

@@ -68,6 +68,7 @@ std::string configuration_of(const Model& model, const TrainerConfig& c, const s
     // Beside what a checkpoint of before these settings says.
     if (c.steps > 0) all["steps"] = c.steps;
     if (!model.demodulation) all["demodulation"] = false;
+    if (model.control_variate) all["control_variate"] = true;
     return all.dump();
 }
 

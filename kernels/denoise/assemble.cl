@@ -1,5 +1,5 @@
 // A part of a source image, turned by one of the 8 dihedral transforms, as the network and the grids read it: network input (SPEC.md section 2),
-// colour to splat (demodulated radiance, weight), what multiplies the result again, target. A work-item takes CLVR_WIDTH pixels of a row.
+// colour to splat (demodulated radiance, weight), what multiplies the result again, target, known light. A work-item takes CLVR_WIDTH pixels of a row.
 #include "lib/pixels.clh"
 #include "lib/tonemap.clh"
 
@@ -12,7 +12,8 @@ static inline vfloat source_pixels(__global const float* plane, int at, int step
 // `source` holds planes of `size` floats; `channel` is (plane, ChannelKind) per input channel. `from`: where in a plane the part's first pixel lies, its
 // steps to the next pixel of a row and of a column (negative or swapped when the part is turned); n, the image of the batch. Radiance is premultiplied.
 __kernel void assemble(__constant DenoiseParams* p, SourceParams s, __global const float* source, uint size, int4 from,
-                       __global const int2* channel, __global float* input, __global float4* splatted, __global float4* remodulation, __global float* target) {
+                       __global const int2* channel, __global float* input, __global float4* splatted, __global float4* remodulation, __global float* target,
+                       __global float* known) {
     int x = (int)get_global_id(0) * CLVR_WIDTH, y = (int)get_global_id(1), n = from.w;
     if (x >= p->width || y >= p->height) return;
     int at = from.x + x * from.y + y * from.z, left = p->width - x;
@@ -34,7 +35,13 @@ __kernel void assemble(__constant DenoiseParams* p, SourceParams s, __global con
     for (int k = 0; k < 3; ++k) {
         vfloat albedo = (vfloat)(1.0f);
         if (s.albedo >= 0) albedo = v_max(SOURCE(s.albedo + k), (vfloat)(s.albedo_floor));
-        radiance[k] = v_min(SOURCE(s.beauty + k) * s.exposure, (vfloat)(s.ceiling)) / albedo;
+        radiance[k] = v_min(SOURCE(s.beauty + k) * s.exposure, (vfloat)(s.ceiling));
+        if (s.known >= 0) {
+            vfloat light = v_min(SOURCE(s.known + k) * s.exposure, (vfloat)(s.ceiling));
+            PLANE(known, 3, k, light);
+            radiance[k] -= light;
+        }
+        radiance[k] /= albedo;
         factor[k] = albedo * weight;
         if (s.target >= 0) PLANE(target, 3, k, SOURCE(s.target + k) * s.exposure);
     }

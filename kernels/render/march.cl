@@ -13,6 +13,12 @@
 #ifndef CLVR_MARCH
 #define CLVR_MARCH 0
 #endif
+#if CLVR_MARCH == 0
+#include "lib/direct_light.clh"
+#define FEATURE_ARGS DIRECT_LIGHT_ARGS,
+#else
+#define FEATURE_ARGS
+#endif
 
 #define LEAST_OPACITY 0.00390625f // features of pixels below 1/256 are constants
 
@@ -22,6 +28,10 @@ typedef struct {
     vfloat weight, depth, depth2, half_depth, peak; // sums of w, w d, w d^2, depth of T = 1/2; greatest stored value
     Vec3 color, normal;                             // sums of w c, w n
     vmask met;                                      // lanes with a visible sample
+#if CLVR_MARCH == 0
+    DirectLight light;
+    Vec3 key, sky; // sums over rays of their light
+#endif
 } MarchSums;
 
 static inline Vec3 add_where(vmask m, Vec3 sum, Vec3 v, vfloat w) {
@@ -37,7 +47,9 @@ static inline Vec3 facing_normal(const Volume* vol, Vec3 p, Vec3 dir, vfloat* st
 }
 
 
-static inline void march_ray(const Volume* vol, __global const float* coarse, __constant RenderParams* render, Vec3 pos_index, Vec3 dir_world, vmask lanes, MarchSums* sums) {
+// `number`: of the ray among the pixel's.
+static inline void march_ray(const Volume* vol, __global const float* coarse, __constant RenderParams* render, int number, Vec3 pos_index, Vec3 dir_world,
+                             vmask lanes, MarchSums* sums) {
     Ray ray = make_ray(vol->p, pos_index, dir_world);
     float step = render->step;
     vfloat t0, t1, t, half_depth = (vfloat)(1.0f);
@@ -49,9 +61,12 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
     vmask active = v_lt(t0, t1) & lanes;
     t0 = v_select(active, t0, (vfloat)(0.0f)), t1 = v_select(active, t1, (vfloat)(0.0f));
     vint k = (vint)(0);
+#if CLVR_MARCH == 0
+    LitSums lit = no_light(number);
+#endif
     for (;;) {
         Int3 i;
-        Vec3 p = seek_visible(vol, coarse, &ray, t0, t1, step, &k, &active, &t, &i);
+        Vec3 p = seek_visible(vol, coarse, &ray, t0, t1, (vfloat)(step), &k, &active, &t, &i);
         if (!v_any(active)) break;
         vfloat stored = stored_value_in(vol, p, i), opacity = opacity_of(vol, stored);
         k += 1;
@@ -70,6 +85,9 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
             vfloat lit = fma(surface_chance(vol->p, steepness), fma((vfloat)(-0.8f), 1.0f + inner3(normal, dir_world), (vfloat)(0.0f)), (vfloat)(1.0f));
             color = scaled(color, lit);
 #endif
+#if CLVR_MARCH == 0
+            add_lit_sample(&lit, &sums->light, number, seen, w, t, step, dir_world, color, normal, surface_chance(vol->p, steepness), render->phase_g);
+#endif
             sums->weight = fma(transmitted, absorbed, sums->weight);
             sums->color = add_where(seen, sums->color, color, w);
             sums->normal = add_where(seen, sums->normal, normal, w);
@@ -82,10 +100,15 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
 #endif
     }
     sums->half_depth += half_depth;
+#if CLVR_MARCH == 0
+    add_direct_light(&lit, &sums->light, vol, coarse, &ray, dir_world, number, render, &sums->key, &sums->sky);
+#endif
 }
 
-// Writes planes of `stride` values at pixel - first_pixel. Features: albedo RGB, normal XYZ, depth, opacity, depth deviation, half depth. dvr, mip: R G B A.
-__kernel void march(VOLUME_ARGS, __global const float* coarse, __constant RenderParams* render, uint first_pixel, uint pixels, uint stride, __global float* planes) {
+// Writes planes of `stride` values at pixel - first_pixel. Features: albedo RGB, normal XYZ, depth, opacity, depth deviation,
+// half depth, radiance by keys RGB, by the sky RGB. dvr, mip: R G B A.
+__kernel void march(VOLUME_ARGS, __global const float* coarse, __constant RenderParams* render, FEATURE_ARGS uint first_pixel, uint pixels, uint stride,
+                    __global float* planes) {
     VOLUME_HERE(vol);
     uint first = (uint)get_global_id(0) * CLVR_WIDTH;
     if (first >= pixels) return;
@@ -96,14 +119,18 @@ __kernel void march(VOLUME_ARGS, __global const float* coarse, __constant Render
     }
     vfloat x = v_load(fx), y = v_load(fy), zero = (vfloat)(0.0f);
     vmask lanes = v_lt(v_iota + (int)first, (vint)((int)pixels));
-    MarchSums s = {zero, zero, zero, zero, zero, {zero, zero, zero}, {zero, zero, zero}, (vmask)(0)};
+    MarchSums s = {zero, zero, zero, zero, zero, {zero, zero, zero}, {zero, zero, zero}, (vmask)(0)
+#if CLVR_MARCH == 0
+                   , DIRECT_LIGHT_HERE, {zero, zero, zero}, {zero, zero, zero}
+#endif
+    };
     for (int ray = 0; ray < CLVR_RAYS; ++ray) {
         // A rotated grid: each position has its own row and column in the pixel.
         int column = (ray * 2 + (ray >> 1)) & 3;
         float px = CLVR_RAYS == 1 ? 0.5f : fma((float)column, 0.25f, 0.125f), py = CLVR_RAYS == 1 ? 0.5f : fma((float)ray, 0.25f, 0.125f);
         Vec3 o, d;
         camera_ray(render, x + px, y + py, &o, &d);
-        march_ray(&vol, coarse, render, o, d, lanes, &s);
+        march_ray(&vol, coarse, render, ray, o, d, lanes, &s);
     }
 #if CLVR_MARCH != 2
     float share = 1.0f / (float)CLVR_RAYS;
@@ -112,7 +139,7 @@ __kernel void march(VOLUME_ARGS, __global const float* coarse, __constant Render
     vmask seen = v_ge(s.weight * share, (vfloat)(LEAST_OPACITY));
     vfloat divisor = v_select(seen, s.weight, (vfloat)(1.0f)), one = (vfloat)(1.0f);
     vfloat depth = s.depth / divisor, variance = fma(-depth, depth, s.depth2 / divisor);
-    vfloat out[10] = {v_select(seen, s.color.x / divisor, one),
+    vfloat out[16] = {v_select(seen, s.color.x / divisor, one),
                       v_select(seen, s.color.y / divisor, one),
                       v_select(seen, s.color.z / divisor, one),
                       v_select(seen, s.normal.x / divisor, zero),
@@ -121,8 +148,14 @@ __kernel void march(VOLUME_ARGS, __global const float* coarse, __constant Render
                       v_select(seen, depth, one),
                       s.weight * share,
                       v_select(seen, sqrt(v_max(variance, zero)), zero),
-                      v_select(seen, s.half_depth * share, one)};
-    int count = 10;
+                      v_select(seen, s.half_depth * share, one),
+                      s.key.x * share,
+                      s.key.y * share,
+                      s.key.z * share,
+                      s.sky.x * share,
+                      s.sky.y * share,
+                      s.sky.z * share};
+    int count = 16;
 #elif CLVR_MARCH == 1
     vfloat out[4] = {s.color.x * share, s.color.y * share, s.color.z * share, s.weight * share};
     int count = 4;

@@ -41,12 +41,13 @@ typedef struct SourceParams {
     int beauty, albedo; ///< the first of three
     int opacity;        ///< weight of a pixel; absent: 1
     int target;         ///< the first of three
+    int known;          ///< light that is taken off what is splatted: the first of three
     int channels;       ///< of the network's input
     float exposure;     ///< factor of radiance
     float ceiling;      ///< radiance is clamped here after exposure
     float albedo_floor;
 } SourceParams;
-CLVR_CHECK_SIZE(SourceParams, 32);
+CLVR_CHECK_SIZE(SourceParams, 36);
 
 CLVR_SHARED_END
 #endif

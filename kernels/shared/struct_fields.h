@@ -4,6 +4,7 @@
 #define CLVR_SHARED_STRUCT_FIELDS_H
 #include "shared/denoise_params.h"
 #include "shared/filter_params.h"
+#include "shared/light_params.h"
 #include "shared/phantom.h"
 #include "shared/render_params.h"
 #include "shared/volume_params.h"
@@ -46,6 +47,15 @@
     CLVR_FIELD(RenderParams, depth_near)                                                                                                   \
     CLVR_FIELD(RenderParams, depth_scale)                                                                                                  \
     CLVR_FIELD(RenderParams, mode)                                                                                                         \
+    CLVR_STRUCT(KeyLight)                                                                                                                  \
+    CLVR_FIELD(KeyLight, direction)                                                                                                        \
+    CLVR_FIELD(KeyLight, right)                                                                                                            \
+    CLVR_FIELD(KeyLight, up)                                                                                                               \
+    CLVR_FIELD(KeyLight, irradiance)                                                                                                       \
+    CLVR_STRUCT(SkyGrid)                                                                                                                   \
+    CLVR_FIELD(SkyGrid, corners)                                                                                                           \
+    CLVR_FIELD(SkyGrid, log2_edge)                                                                                                         \
+    CLVR_FIELD(SkyGrid, voxel)                                                                                                             \
     CLVR_STRUCT(GridLevel)                                                                                                                 \
     CLVR_FIELD(GridLevel, offset)                                                                                                          \
     CLVR_FIELD(GridLevel, pixels)                                                                                                          \
@@ -72,6 +82,7 @@
     CLVR_FIELD(SourceParams, albedo)                                                                                                       \
     CLVR_FIELD(SourceParams, opacity)                                                                                                      \
     CLVR_FIELD(SourceParams, target)                                                                                                       \
+    CLVR_FIELD(SourceParams, known)                                                                                                        \
     CLVR_FIELD(SourceParams, channels)                                                                                                     \
     CLVR_FIELD(SourceParams, exposure)                                                                                                     \
     CLVR_FIELD(SourceParams, ceiling)                                                                                                      \

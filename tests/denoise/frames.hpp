@@ -30,6 +30,11 @@ inline Frame noisy_frame(int width, int height) {
             for (const char* c : {"albedo.R", "albedo.G", "albedo.B"}) f.channel(c)[i] = disc > 0 ? 0.3f + 0.5f * (x / 7 % 2) : 1;
             for (const char* c : {"normal.X", "normal.Y", "normal.Z"}) f.channel(c)[i] = disc * std::sin(0.1f * static_cast<float>(x + y));
             f.channel("depth.Z")[i] = disc > 0 ? static_cast<float>(y) / static_cast<float>(height) : 1;
+            const float lit = disc * (x > y ? 0.4f : 0.1f); // a shadow's border, and a sky that is brighter on top
+            for (const char* c : {"R", "G", "B"}) {
+                f.channel(std::string("light.key.") + c)[i] = lit;
+                f.channel(std::string("light.sky.") + c)[i] = disc * (0.3f - 0.2f * static_cast<float>(y) / static_cast<float>(height));
+            }
         }
     return f;
 }

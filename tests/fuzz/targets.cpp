@@ -111,7 +111,7 @@ void exr(const std::string& path) {
     }
     require(std::isfinite(exposure_of(frame)), "an exposure that is not finite");
     std::vector<float> planes;
-    plan.gather(frame, nullptr, {0, 0, frame.width, frame.height}, planes);
+    plan.gather(frame, nullptr, {0, 0, frame.width, frame.height}, plan.known_light(frame), planes);
     require(std::all_of(planes.begin(), planes.end(), [](float x) { return std::isfinite(x); }), "a plane that is not finite");
 }
 

@@ -219,7 +219,7 @@ GridPass run(const Network& n, const GridImage& image, GridLoss kind, bool backw
         for (int c = 0; c < 3; ++c) {
             double blend = 0;
             for (int l = 0; l < levels; ++l) blend += share(l, p) * sliced[l].sliced[p][c];
-            pass.result[3 * p + c] = blend * image.remodulation[3 * p + c];
+            pass.result[3 * p + c] = blend * image.remodulation[3 * p + c] + (image.known.empty() ? 0 : image.known[3 * p + c]);
             const LossValue v = loss_of(kind, pass.result[3 * p + c], image.target[3 * p + c]);
             pass.loss += v.value / (3.0 * static_cast<double>(pixels));
             upstream[p][c] = v.slope / (3.0 * static_cast<double>(pixels)) * image.remodulation[3 * p + c];

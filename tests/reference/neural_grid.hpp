@@ -20,6 +20,7 @@ struct GridImage {
     std::vector<double> input;        ///< [channels][pixels]
     std::vector<double> splatted;     ///< [pixels][4]: colour times weight (what N sums), weight (what D sums)
     std::vector<double> remodulation; ///< [pixels][3]
+    std::vector<double> known;        ///< [pixels][3], added to the result; empty: 0
     std::vector<double> target;       ///< [pixels][3]
 };
 

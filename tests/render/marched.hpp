@@ -19,7 +19,14 @@ inline Marched march(Device& device, const Stage& stage, March kind = March::fea
     Marched m;
     m.numbers = (stage.scene.width + 3u) / 4 * ((stage.scene.height + 3u) / 4) * 16;
     m.planes.resize(static_cast<std::size_t>(m.numbers) * march_planes(kind));
-    Marcher(device, volume, light, kind, stage.scene.feature_samples).run(0, m.numbers, m.planes, m.numbers, 0);
+    const SkySplit split = split_sky(stage.render, stage.environment);
+    const KeyLights keys(device, key_lights(stage.render, split));
+    if (kind == March::features) {
+        const SkyLight sky(device, volume, split);
+        Marcher(device, volume, light, keys, sky, stage.scene.feature_samples).run(0, m.numbers, m.planes, m.numbers, 0);
+    } else {
+        Marcher(device, volume, light, kind, stage.scene.feature_samples).run(0, m.numbers, m.planes, m.numbers, 0);
+    }
     return m;
 }
 

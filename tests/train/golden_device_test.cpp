@@ -35,7 +35,7 @@ TEST_P(EndToEnd, MeetsTheGoldenVectors) {
     const ChannelPlan plan(model, true);
     const Frame frame = frame_of(golden["x"], height, width, 0), target = colours_of(golden["target"], height, width, 0);
     std::vector<float> planes;
-    plan.gather(frame, &target, {0, 0, width, height}, planes);
+    plan.gather(frame, &target, {0, 0, width, height}, plan.known_light(frame), planes);
     const Buffer source = device.upload(planes, "source"), parameters = device.upload(model.flat(), "parameters");
     const auto prepared = [&](NeuralGrid& grid) {
         grid.set_parameters(parameters);
@@ -171,7 +171,7 @@ TEST_P(Stage, MeetsTheGoldenVectors) {
         golden.expect_near("cellw", weight);
 
         const Buffer result = plane_of(std::vector<double>(pixels * 3), 3);
-        device.launch(slice, all, {1}, {}, params, guide, grid_cells, ones, result);
+        device.launch(slice, all, {1}, {}, params, guide, grid_cells, ones, ones /* no light is known */, result);
         golden.expect_near("sliced", interleaved(grid, result, 3, 0, 3));
 
         const Buffer upstream = device.buffer(pixels * 16, "upstream"), by_guide = plane_of(std::vector<double>(pixels), 1),

@@ -22,12 +22,14 @@ struct Case {
     std::vector<Model::Level> levels;
     std::vector<std::string> channels;
     bool preprocessing;
+    bool control_variate = false;
 };
 
 const Case cases[] = {{23, 17, 20, 5, {{4, 4}, {8, 8}, {16, 16}}, reference_channels(), true},
                       {19, 33, 7, 3, {{3, 5}, {10, 64}}, {"R", "G", "B", "albedo.R", "depth.Z"}, false},
                       {16, 16, 10, 5, {{4, 4}, {8, 8}, {16, 16}}, reference_channels(), false},
-                      {41, 9, 5, 1, {{8, 8}}, {"albedo.G", "normal.X"}, true}};
+                      {41, 9, 5, 1, {{8, 8}}, {"albedo.G", "normal.X"}, true},
+                      {27, 21, 6, 3, {{4, 8}, {8, 16}}, {"R", "albedo.R", "albedo.G", "albedo.B", "known.G"}, true, true}};
 
 Model model_of(const Case& c, std::uint64_t seed) {
     Model m;
@@ -36,6 +38,7 @@ Model model_of(const Case& c, std::uint64_t seed) {
     m.kernel = c.kernel;
     m.levels = c.levels;
     m.exposure = m.opacity_weight = c.preprocessing;
+    m.control_variate = c.control_variate;
     m.albedo_floor = c.preprocessing ? 1.0f / 32 : 0x1p-20f;
     initialise(m, seed);
     Random random{seed};
@@ -70,7 +73,7 @@ struct Setting {
             for (float& v : target.channel(name)) v = static_cast<float>(0.02 + 1.2 * random() * random());
         const ChannelPlan plan(model, true);
         std::vector<float> planes;
-        plan.gather(frame, &target, {0, 0, c.width, c.height}, planes);
+        plan.gather(frame, &target, {0, 0, c.width, c.height}, plan.known_light(frame), planes);
         const Buffer source = device.upload(planes, "source");
         parameters = device.upload(model.flat(), "parameters");
         grid.set_parameters(parameters);
@@ -85,6 +88,7 @@ struct Setting {
         for (const auto& v : device.download<shared::float4>(grid.remodulation(), frame.pixels()))
             image.remodulation.insert(image.remodulation.end(), {v.x, v.y, v.z});
         image.target = interleaved(grid, grid.target(), 3, 0, 3);
+        if (model.control_variate) image.known = interleaved(grid, grid.known(), 3, 0, 3);
     }
 
     std::vector<double> gradient(Loss loss) {

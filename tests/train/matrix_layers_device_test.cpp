@@ -51,7 +51,7 @@ TEST(MatrixLayers, AgreeWithTheDirectKernels) {
             Frame frame = noisy_frame(width, height), target = frame;
             for (float& v : target.channel("G")) v = 0.3f + 0.2f * static_cast<float>(n);
             std::vector<float> planes;
-            plan.gather(frame, &target, {0, 0, width, height}, planes);
+            plan.gather(frame, &target, {0, 0, width, height}, plan.known_light(frame), planes);
             grid.assemble(device.upload(planes, "source"), width, height, plan.params(1), 0, 0, 4 * n, n);
             device.finish();
         }

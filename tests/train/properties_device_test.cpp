@@ -57,7 +57,7 @@ struct Level {
     /// [pixels][3]
     std::vector<double> sliced(const Buffer& cells) {
         const Buffer out = planes(std::vector<double>(3 * pixels_of_image()));
-        device.launch(slice_kernel, grid.pixel_items(1), {1}, {}, grid.params(), guides, cells, ones, out);
+        device.launch(slice_kernel, grid.pixel_items(1), {1}, {}, grid.params(), guides, cells, ones, ones /* no light is known */, out);
         return interleaved(grid, out, 3, 0, 3);
     }
     /// U / S of each pixel.

@@ -66,6 +66,9 @@ SceneOnDevice::SceneOnDevice(Device& device, const PreparedVolume& prepared, con
     render_params = clvr::render_params(scene, voxels, resolve_view(scene, outline, false), {});
     volume = std::make_unique<DeviceVolume>(device, classified, layout, volume_params);
     light = std::make_unique<LightTables>(device, render_params, EnvironmentTables{});
+    const SkySplit split = split_sky(render_params, EnvironmentTables{});
+    keys = std::make_unique<KeyLights>(device, key_lights(render_params, split));
+    sky = std::make_unique<SkyLight>(device, *volume, split);
 }
 
 } // namespace clvr::bench

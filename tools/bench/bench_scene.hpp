@@ -1,6 +1,7 @@
 // The standard scene of the benchmarks: a volume computed on the host, so that every device gets the same bits, and its parts on a device.
 #pragma once
 #include "host/render/device_volume.hpp"
+#include "host/render/direct_light.hpp"
 #include "host/render/light_tables.hpp"
 #include "host/render/renderer.hpp"
 
@@ -24,6 +25,8 @@ struct SceneOnDevice {
     shared::RenderParams render_params;
     std::unique_ptr<DeviceVolume> volume;
     std::unique_ptr<LightTables> light;
+    std::unique_ptr<KeyLights> keys;
+    std::unique_ptr<SkyLight> sky;
     std::uint32_t pixels; ///< pixel numbers
 
     SceneOnDevice(Device& device, const PreparedVolume& prepared, const Scene& scene);

@@ -37,11 +37,11 @@ int main(int argc, char** argv) {
         fmt::print("{}, packets of {}, 256^3 u8, {}x{}\n", device.facts().name, packet_width(device), scene.width, scene.height);
 
         PathTracer tracer(device, *parts.volume, *parts.light, parts.pixels);
-        std::vector<float> distance, planes(10 * static_cast<std::size_t>(rays)), native_planes;
+        std::vector<float> distance, planes(march_planes(March::features) * static_cast<std::size_t>(rays)), native_planes;
         compare(
             "delta tracking", rays, [&] { tracer.fly_camera_rays(static_cast<std::uint32_t>(rays)); },
             [&] { native::delta_tracking(inputs, distance); });
-        Marcher marcher(device, *parts.volume, *parts.light, March::features, 1);
+        Marcher marcher(device, *parts.volume, *parts.light, *parts.keys, *parts.sky, 1);
         compare(
             "feature march", rays, [&] { marcher.run(0, static_cast<std::uint32_t>(rays), planes, static_cast<std::size_t>(rays), 0); },
             [&] { native::feature_march(inputs, native_planes); });

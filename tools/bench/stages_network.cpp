@@ -35,7 +35,7 @@ std::shared_ptr<NeuralGrid> grid_with_frame(Device& d, const Model& model, const
     grid->set_parameters(d.upload(model.flat(), "model"));
     const ChannelPlan plan(model, false);
     std::vector<float> planes;
-    plan.gather(frame, nullptr, {0, 0, frame.width, frame.height}, planes);
+    plan.gather(frame, nullptr, {0, 0, frame.width, frame.height}, plan.known_light(frame), planes);
     const Buffer source = d.upload(planes, "frame");
     grid->assemble(source, frame.width, frame.height, plan.params(1), 0, 0, 0, 0);
     grid->forward(1);

@@ -24,7 +24,7 @@ StageRun feature_march(std::vector<Device>& devices, Size size) {
     Device d = devices.front();
     const Scene scene = size == Size::tiny ? benchmark_scene(8, 8, 1) : benchmark_scene(320, 240, 1);
     const auto parts = std::make_shared<SceneOnDevice>(d, prepared_volume(edge_of(size)), scene);
-    const auto marcher = std::make_shared<Marcher>(d, *parts->volume, *parts->light, March::features, 1);
+    const auto marcher = std::make_shared<Marcher>(d, *parts->volume, *parts->light, *parts->keys, *parts->sky, 1);
     const auto planes = std::make_shared<std::vector<float>>(march_planes(March::features) * std::size_t{parts->pixels});
     StageRun r;
     r.run = [=] { marcher->run(0, parts->pixels, *planes, parts->pixels, 0); };

@@ -60,6 +60,7 @@ void read_settings(const std::string& text, const std::string& where, Model& m) 
     m.albedo_floor = static_cast<float>(floor);
     fields.get("opacity_weight", m.opacity_weight);
     fields.get("demodulation", m.demodulation);
+    fields.get("control_variate", m.control_variate);
     fields.done();
 }
 
@@ -113,7 +114,9 @@ std::string model_settings_json(const Model& m) {
                                     {"exposure", m.exposure},
                                     {"albedo_floor", static_cast<double>(m.albedo_floor)},
                                     {"opacity_weight", m.opacity_weight}};
-    if (!m.demodulation) settings["demodulation"] = false; // absent: on, as in files of before the switch
+    // Absent, as in files of before the switches: on and off.
+    if (!m.demodulation) settings["demodulation"] = false;
+    if (m.control_variate) settings["control_variate"] = true;
     return settings.dump();
 }
 

@@ -1,0 +1,85 @@
+// The light that is known without noise: shares found again, bad pixels, plans that read it.
+#include "host/denoise/channels.hpp"
+#include "runtime/error.hpp"
+#include "tests/denoise/frames.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace clvr::testing {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Radiance that is made of the frame's direct light by these shares, plus noise of mean 0.
+Frame made_of(double key, double sky, double ambient, double noise) {
+    Frame f = noisy_frame(64, 48);
+    std::uint32_t k = 5;
+    for (std::size_t i = 0; i < f.pixels(); ++i)
+        for (const char* c : {"R", "G", "B"}) {
+            k = k * 1664525u + 1013904223u;
+            const std::string colour = c;
+            const double direct = key * f.at("light.key." + colour)[i] + sky * f.at("light.sky." + colour)[i];
+            f.channel(colour)[i] = static_cast<float>(
+                direct + f.at("opacity.A")[i] * (ambient * f.at("albedo." + colour)[i] + noise * ((k >> 8) * 0x1p-23 - 1)));
+        }
+    return f;
+}
+
+TEST(KnownLight, FindsTheSharesThatAFrameIsMadeOf) {
+    const Frame f = made_of(1.4, 0.8, 0.05, 0.05);
+    const KnownLight known(f);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(known.shares(c).key, 1.4, 0.1);
+        EXPECT_NEAR(known.shares(c).sky, 0.8, 0.1);
+        EXPECT_NEAR(known.shares(c).ambient, 0.05, 0.03);
+    }
+    const std::size_t lit = 24 * 64 + 40;
+    ASSERT_EQ(f.at("opacity.A")[lit], 1);
+    const KnownLight::Shares& s = known.shares(1);
+    EXPECT_FLOAT_EQ(known(1, lit), static_cast<float>(s.key * f.at("light.key.G")[lit] + s.sky * f.at("light.sky.G")[lit] +
+                                                      s.ambient * f.at("albedo.G")[lit]));
+    EXPECT_EQ(known(1, 0), 0); // nothing is there
+}
+
+TEST(KnownLight, OfNothingTakesTheLightAsItIs) {
+    Frame f = noisy_frame(20, 20);
+    for (float& v : f.channel("opacity.A")) v = 0;
+    EXPECT_NEAR(KnownLight(f).shares(0).key, 1, 1e-9);
+    EXPECT_NEAR(KnownLight(f).shares(2).sky, 1, 1e-9);
+    EXPECT_NEAR(KnownLight(f).shares(2).ambient, 0, 1e-9);
+}
+
+TEST(KnownLight, IsFiniteWhateverTheFrameHolds) {
+    Frame f = made_of(1, 1, 0, 0.2);
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1e30f, 3e38f};
+    const char* const names[] = {"R", "light.key.R", "light.sky.R", "albedo.R", "opacity.A"};
+    for (std::size_t n = 0; n < 5; ++n)
+        for (std::size_t k = 0; k < 4; ++k) f.channel(names[n])[24 * 64 + 20 + 4 * n + k] = bad[k];
+    const KnownLight known(f);
+    for (const double share : {known.shares(0).key, known.shares(0).sky, known.shares(0).ambient}) EXPECT_TRUE(std::isfinite(share));
+    for (std::size_t i = 0; i < f.pixels(); ++i) ASSERT_TRUE(std::isfinite(known(0, i))) << i;
+}
+
+TEST(ChannelPlan, NamesTheChannelsThatKnownLightLacks) {
+    Model m = default_settings();
+    m.control_variate = true;
+    Frame f = noisy_frame(16, 16);
+    for (const char* name : {"depth.deviation", "depth.half"}) f.channel(name);
+    f.attributes["clvr.spp"] = "1";
+    const ChannelPlan plan(m, false);
+    EXPECT_NO_THROW(plan.check(f));
+    f.channels.erase("light.sky.G");
+    try {
+        plan.check(f);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_THAT(e.what(), HasSubstr("lacks channel light.sky.G"));
+    }
+    EXPECT_FALSE(ChannelPlan(default_settings(), false).known_light(f).has_value());
+}
+
+} // namespace
+} // namespace clvr::testing
