@@ -78,7 +78,11 @@ const std::vector<std::pair<std::string, MadeVolume (*)(std::uint64_t seed)>>& m
         {"snake", snake_volume},
         {"vessels", vessel_volume},
         {"foam", [](std::uint64_t) { return foam_volume(); }},
-        {"machine", machine_volume}};
+        {"machine", machine_volume},
+        {"skull", skull_volume},
+        {"cloud", cloud_volume},
+        {"rock", [](std::uint64_t) { return rock_volume(); }},
+        {"fibres", fibres_volume}};
     return all;
 }
 

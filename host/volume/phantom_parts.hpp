@@ -34,6 +34,10 @@ MadeVolume snake_volume(std::uint64_t seed);
 MadeVolume beetle_volume(std::uint64_t seed);
 MadeVolume vessel_volume(std::uint64_t seed);
 MadeVolume foam_volume();
+MadeVolume cloud_volume(std::uint64_t seed);
+MadeVolume rock_volume();
+MadeVolume fibres_volume(std::uint64_t seed);
+MadeVolume skull_volume(std::uint64_t seed);
 MadeVolume machine_volume(std::uint64_t seed);
 
 /// Numbers 0..1, the same everywhere (S. Vigna's splitmix64).
@@ -104,6 +108,12 @@ public:
     /// `turn` per unit.
     SolidBody& ellipsoid(const Double3& c, const Double3& r, double blend, double slope = 0, double turn = 0) {
         return solid(CLVR_PART_ELLIPSOID, 1, c, r, blend, slope, turn);
+    }
+    /// Soft, for a body that is a sum of densities.
+    SolidBody& blob(const Double3& c, const Double3& r, double density, double slope, double turn) {
+        solid(CLVR_PART_ELLIPSOID, 1, c, r, 1, slope, turn);
+        parts_.back().sign = static_cast<float>(density);
+        return *this;
     }
     SolidBody& block(const Double3& c, const Double3& r, double blend, double slope = 0, double turn = 0) {
         return solid(CLVR_PART_BLOCK, 1, c, r, blend, slope, turn);

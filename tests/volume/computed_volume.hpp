@@ -15,6 +15,9 @@ inline std::string hash_of(const Voxels& v) {
     return sha256_hex(std::string_view(reinterpret_cast<const char*>(v.bytes.data()), v.bytes.size()));
 }
 
+/// Hounsfield units of a voxel.
+inline double at(const Voxels& v, int x, int y, int z) { return v.slope * reference::stored_at(v, {x, y, z}) + v.intercept; }
+
 /// Mean Hounsfield units of the voxels around a place [mm], which the noise does not move by more than 10.
 inline double hounsfield(const Voxels& v, const Double3& pos_world) {
     const Double3 p = v.geometry.to_index(pos_world);
