@@ -1,10 +1,13 @@
 #!/usr/bin/perl
-# Writes an HDR sky to train under: haze over ground, a small sun and softer lamps. A latitude-longitude Radiance image of 256 x 128 pixels,
-# another one for each seed. Usage: make_sky.pl SEED > SKY.hdr
+# Writes what to train under as a latitude-longitude Radiance image of 256 x 128 pixels, another one for each seed.
+# Usage: make_sky.pl SEED [sky|key] > SKY.hdr
+#   sky   haze over ground, a small sun and softer lamps
+#   key   one light as large as clvr's key light, which stays where it is in the world, in dim light from everywhere
 use strict;
 use warnings;
 
-my $state = (shift // die "usage: make_sky.pl SEED > SKY.hdr\n") * 7919 + 12345;
+my $state = (shift // die "usage: make_sky.pl SEED [sky|key] > SKY.hdr\n") * 7919 + 12345;
+my $key = (shift // 'sky') eq 'key';
 sub uniform { # between two numbers (Lehmer's generator, the same on every machine)
     my ($low, $high) = @_;
     $state = $state * 16807 % 2147483647;
@@ -23,6 +26,12 @@ my @lamps = map { # direction, cosine of its radius, radiance: an irradiance of 
     my ($warm, $across) = (uniform(0.6, 1), sqrt(1 - $up**2));
     { at => [$across * cos $azimuth, $across * sin $azimuth, $up], cosine => cos $radius, colour => [$strength, $strength * (1 + $warm) / 2, $strength * $warm] };
 } 0 .. int uniform(1, 3.99);
+if ($key) {
+    my ($azimuth, $up, $radius, $dim) = (uniform(0, 2 * $pi), uniform(0.2, 0.9), 5 * $pi / 180, uniform(0.02, 0.3));
+    my ($across, $strength) = (sqrt(1 - $up**2), uniform(1, 3) / ($pi * $radius**2));
+    @lamps = ({ at => [$across * cos $azimuth, $across * sin $azimuth, $up], cosine => cos $radius, colour => [($strength) x 3] });
+    $_ = $dim for @zenith, @horizon, @ground;
+}
 
 sub radiance {
     my ($azimuth, $elevation) = @_;

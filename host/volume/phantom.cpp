@@ -1,5 +1,4 @@
-// Drives kernels/volume/{head,snake,beetle,vessels,foam}.cl: lists the parts that matter to each cell of voxels, launches, converts to the
-// type asked for.
+// Drives the kernels of kernels/volume/: lists the parts that matter to each cell of voxels, launches, converts to the type asked for.
 #include "host/volume/phantom.hpp"
 #include "host/volume/phantom_parts.hpp"
 
@@ -70,21 +69,37 @@ void store(const std::vector<std::int16_t>& hu, std::size_t first, Voxels& v) {
     });
 }
 
+/// The computed volumes by name, as phantom_names() lists them.
+const std::vector<std::pair<std::string, MadeVolume (*)(std::uint64_t seed)>>& makers() {
+    static const std::vector<std::pair<std::string, MadeVolume (*)(std::uint64_t)>> all{
+        {"head", [](std::uint64_t) { return head_volume(true); }},
+        {"head-closed", [](std::uint64_t) { return head_volume(false); }},
+        {"beetle", beetle_volume},
+        {"snake", snake_volume},
+        {"vessels", vessel_volume},
+        {"foam", [](std::uint64_t) { return foam_volume(); }},
+        {"machine", machine_volume},
+        {"skull", skull_volume},
+        {"cloud", cloud_volume},
+        {"rock", [](std::uint64_t) { return rock_volume(); }},
+        {"fibres", fibres_volume}};
+    return all;
+}
+
 MadeVolume volume_named(const std::string& name, std::uint64_t seed) {
-    const std::vector<std::string> names = phantom_names();
-    if (std::find(names.begin(), names.end(), name) == names.end())
-        throw Error(ErrorKind::usage, fmt::format("there is no such computed volume; there are: {}", fmt::join(names, ", ")),
-                    "demo:" + name);
-    return name == "beetle"    ? beetle_volume(seed)
-           : name == "snake"   ? snake_volume(seed)
-           : name == "vessels" ? vessel_volume(seed)
-           : name == "foam"    ? foam_volume()
-                               : head_volume(name == "head");
+    for (const auto& [known, make] : makers())
+        if (known == name) return make(seed);
+    throw Error(ErrorKind::usage, fmt::format("there is no such computed volume; there are: {}", fmt::join(phantom_names(), ", ")),
+                "demo:" + name);
 }
 
 } // namespace
 
-std::vector<std::string> phantom_names() { return {"head", "head-closed", "beetle", "snake", "vessels", "foam"}; }
+std::vector<std::string> phantom_names() {
+    std::vector<std::string> names;
+    for (const auto& maker : makers()) names.push_back(maker.first);
+    return names;
+}
 
 PhantomSize phantom_size(const std::string& name) {
     const MadeVolume made = volume_named(name, 0);

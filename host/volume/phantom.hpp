@@ -12,7 +12,8 @@
 namespace clvr {
 
 /// The names that make_phantom knows: "head" is cut open on the patient's left to show skull and brain, "head-closed" is not; "beetle" is a
-/// stag beetle, "snake" a young snake in its egg, "vessels" a tree of vessels, "foam" foam torn by turbulence.
+/// stag beetle, "snake" a young snake in its egg, "vessels" a tree of vessels, "foam" foam torn by turbulence, "machine" a machine part of
+/// aluminium and steel, "skull" a bare skull on a holder, "cloud" a smooth field, "rock" a core of porous rock, "fibres" a woven composite.
 std::vector<std::string> phantom_names();
 
 struct PhantomOptions {

@@ -34,6 +34,11 @@ MadeVolume snake_volume(std::uint64_t seed);
 MadeVolume beetle_volume(std::uint64_t seed);
 MadeVolume vessel_volume(std::uint64_t seed);
 MadeVolume foam_volume();
+MadeVolume cloud_volume(std::uint64_t seed);
+MadeVolume rock_volume();
+MadeVolume fibres_volume(std::uint64_t seed);
+MadeVolume skull_volume(std::uint64_t seed);
+MadeVolume machine_volume(std::uint64_t seed);
 
 /// Numbers 0..1, the same everywhere (S. Vigna's splitmix64).
 class Chance {
@@ -71,6 +76,29 @@ inline shared::float4 packed(const Double3& v, double w) {
 /// The direction (0, c, s) of a line that rises by `slope` per unit.
 inline Double3 rising(double slope) { return unit({0, 1, slope}); }
 
+/// (cosine, sine, 0) of an angle in turns, by Taylor's series: double's precision without libm.
+inline Double3 on_circle(double turns) {
+    const int quarters = static_cast<int>(turns * 4 + (turns < 0 ? -0.5 : 0.5));
+    const double angle = (turns - quarters * 0.25) * 6.283185307179586; // within an eighth of a turn
+    double c = 0, s = 0, term = 1;
+    for (int k = 0; k < 20; ++k) { // the k-th derivative's share
+        (k % 2 ? s : c) += k / 2 % 2 ? -term : term;
+        term *= angle / (k + 1);
+    }
+    const int q = quarters & 3;
+    return q == 0 ? Double3{c, s, 0} : q == 1 ? Double3{-s, c, 0} : q == 2 ? Double3{-c, -s, 0} : Double3{s, -c, 0};
+}
+
+/// Where a part is and how it is turned: its first two axes, of unit length; the third is their cross product.
+struct Pose {
+    Double3 at, x{1, 0, 0}, y{0, 1, 0};
+};
+/// With the third axis along `axis`.
+inline Pose facing(const Double3& at, const Double3& axis) {
+    const Double3 x = unit(cross(axis, axis[2] * axis[2] < 0.5 * inner(axis, axis) ? Double3{0, 0, 1} : Double3{1, 0, 0}));
+    return {at, x, unit(cross(axis, x))};
+}
+
 /// Appends parts to one body.
 class SolidBody {
 public:
@@ -81,11 +109,25 @@ public:
     SolidBody& ellipsoid(const Double3& c, const Double3& r, double blend, double slope = 0, double turn = 0) {
         return solid(CLVR_PART_ELLIPSOID, 1, c, r, blend, slope, turn);
     }
+    /// Soft, for a body that is a sum of densities.
+    SolidBody& blob(const Double3& c, const Double3& r, double density, double slope, double turn) {
+        solid(CLVR_PART_ELLIPSOID, 1, c, r, 1, slope, turn);
+        parts_.back().sign = static_cast<float>(density);
+        return *this;
+    }
     SolidBody& block(const Double3& c, const Double3& r, double blend, double slope = 0, double turn = 0) {
         return solid(CLVR_PART_BLOCK, 1, c, r, blend, slope, turn);
     }
     SolidBody& cut(const Double3& c, const Double3& r, double blend, double slope = 0, double turn = 0) {
         return solid(CLVR_PART_ELLIPSOID, -1, c, r, blend, slope, turn);
+    }
+    /// Half sizes and the radius of the edges [mm]; sign -1 cuts.
+    SolidBody& box(const Pose& pose, const Double3& half, double edge, double blend, int sign = 1) {
+        return machined(CLVR_PART_BOX, pose, half, edge, 0, norm(half), blend, sign);
+    }
+    /// Around the pose's third axis; a pitch [mm] makes it a screw, or a tapped hole where it cuts.
+    SolidBody& cylinder(const Pose& pose, double radius, double half_length, double edge, double blend, int sign = 1, double pitch = 0) {
+        return machined(CLVR_PART_CYLINDER, pose, {radius, radius, half_length}, edge, pitch, norm({radius, half_length, 0}), blend, sign);
     }
     /// Straight pieces from node to node.
     SolidBody& tube(const std::vector<Node>& nodes, double blend, int sign = 1) {
@@ -130,6 +172,14 @@ private:
         p.c = packed(turned(z_tilted) * (1 / r[2]), 1 / r[2]);
         const double bound = kind == CLVR_PART_BLOCK ? norm(r) : std::max({r[0], r[1], r[2]});
         return add(p, c, bound, blend, sign);
+    }
+    SolidBody& machined(int kind, const Pose& pose, const Double3& half, double edge, double pitch, double bound, double blend, int sign) {
+        shared::PhantomPart p{};
+        p.kind = kind;
+        p.a = packed(pose.x, half[0]);
+        p.b = packed(pose.y, half[1]);
+        p.c = packed({half[2], edge, pitch > 0 ? 1 / pitch : 0}, pitch);
+        return add(p, pose.at, bound, blend, sign);
     }
     SolidBody& segment(const Node& from, const Node& to, double blend, int sign) {
         const Double3 axis = place(to) - place(from);

@@ -50,11 +50,4 @@ MadeVolume vessel_volume(std::uint64_t seed) {
     return v;
 }
 
-MadeVolume foam_volume() {
-    MadeVolume v{"foam", {-50, -50, -50}, {100, 100, 100}, {320, 320, 320}, VoxelType::u8, {}};
-    v.bodies.push_back({10, false, {}});
-    SolidBody(v.bodies[0]).ellipsoid({0, 0, 0}, {44, 44, 44}, 1);
-    return v;
-}
-
 } // namespace clvr

@@ -1,25 +1,8 @@
 // Foam, torn by turbulence: the walls between the cells of scattered points (S. Worley, "A cellular texture basis function", 1996) in space that fractal
 // noise (K. Perlin) bends; in Hounsfield units, with nothing beyond a ball.
-#include "lib/solids.clh"
+#include "lib/scattered_points.clh"
 
 #define PERIOD 11.0f // of the points' lattice [mm]
-
-// The second least less the least distance to a point, in units of the lattice: 0 on a wall.
-static inline vfloat wall_distance(Vec3 p, uint key) {
-    vfloat qx = p.x * (1.0f / PERIOD), qy = p.y * (1.0f / PERIOD), qz = p.z * (1.0f / PERIOD), nearest = (vfloat)(8.0f), second = nearest;
-    vfloat fx = floor(qx), fy = floor(qy), fz = floor(qz);
-    for (int k = 0; k < 27; ++k) {
-        vfloat cx = fx + (float)(k % 3 - 1), cy = fy + (float)(k / 3 % 3 - 1), cz = fz + (float)(k / 9 - 1);
-        vuint h = scrambled(v_uint_of_int(v_int(cx)) * 0xC2B2AE3Du ^ v_uint_of_int(v_int(cy)) * 0x9E3779B1u ^ v_uint_of_int(v_int(cz)) * 0x85EBCA77u ^ (vuint)(key));
-        // A point in the middle 80 % of its cell.
-        vfloat dx = fma(component(h), (vfloat)(0.4f), cx + 0.5f) - qx, dy = fma(component(h >> 10), (vfloat)(0.4f), cy + 0.5f) - qy,
-               dz = fma(component(h >> 20), (vfloat)(0.4f), cz + 0.5f) - qz;
-        vfloat d = length3(vec3(dx, dy, dz));
-        second = v_min(second, v_max(nearest, d));
-        nearest = v_min(nearest, d);
-    }
-    return second - nearest;
-}
 
 __kernel void foam(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,
                    __global const uint* list, int first_slice, int slices) {
@@ -46,7 +29,8 @@ __kernel void foam(__global short* out, __constant PhantomParams* params, __glob
             swirl = fma(fabs(n), (vfloat)(share), swirl);
         }
         vfloat thick = fma(ramp(m.p.z, 45.0f, -45.0f), (vfloat)(0.5f), (vfloat)(0.45f)); // half a wall [mm]
-        vfloat wall = fma(wall_distance(p, key + 64u), (vfloat)(0.5f * PERIOD), -thick);
+        NearestPoints near_points = nearest_points(scaled(p, (vfloat)(1.0f / PERIOD)), key + 64u);
+        vfloat wall = fma(near_points.second - near_points.first, (vfloat)(0.5f * PERIOD), -thick); // 0 apart: on a wall
         vfloat shape = v_max(wall, fma(swirl, (vfloat)(7.0f), ball));
         hu = v_select(near, paint(hu, fma(swirl, (vfloat)(520.0f), (vfloat)(60.0f)), inside(shape, params->origin.w)), hu);
     }

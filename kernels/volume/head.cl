@@ -3,7 +3,7 @@
 //
 // Bodies are solids (lib/solids.clh) of the parts in host/volume/phantom_anatomy.cpp; tissues are painted one over the other, each with a ramp of
 // partial volume.
-#include "lib/solids.clh"
+#include "lib/skull.clh"
 
 // Skin, fat under it, muscle with streaks of fat below.
 static inline vfloat flesh(Vec3 p, vfloat skin, float per_mm, uint key) {
@@ -12,35 +12,6 @@ static inline vfloat flesh(Vec3 p, vfloat skin, float per_mm, uint key) {
     vfloat hu = paint_hu((vfloat)(58.0f), -70.0f, v_clamp(fma(fabs(streak), (vfloat)(-14.0f), (vfloat)(0.8f)), (vfloat)(0.0f), (vfloat)(1.0f)));
     hu = paint_hu(hu, -95.0f, inside(-skin - fat_end, 0.7f));
     return paint_hu(hu, 65.0f, inside(-skin - 3.2f, per_mm));
-}
-
-// Depth of the sutures' groove in the outside of the braincase, 0..1.
-static inline vfloat suture(Vec3 p, uint key) {
-    vfloat n = noise(p, 5.0f, key), three = (vfloat)(3.0f), x = fabs(p.x), none = (vfloat)(9.0f);
-    vfloat coronal = fma(n, three, fma(p.z - 60.0f, (vfloat)(-0.25f), p.y + 16.0f)); // > 0: behind it
-    vfloat lambdoid = fma(n, three, fma(x, (vfloat)(1.05f), p.z - 92.0f));           // < 0: below it
-    vfloat squamous = fma(n, (vfloat)(1.5f), length3(vec3((vfloat)(0.0f), p.y - 4.0f, p.z - 6.0f)) - 44.0f);
-    vmask top = v_gt(p.z, (vfloat)(45.0f)), back = v_gt(p.y, (vfloat)(35.0f)), side = v_gt(x, (vfloat)(45.0f));
-    vmask between = top & v_gt(coronal, (vfloat)(0.0f)) & v_gt(v_select(back, lambdoid, none), (vfloat)(0.0f));
-    vfloat away = v_select(top, fabs(coronal), none);
-    away = v_min(away, v_select(between, fabs(fma(n, three, p.x)), none)); // sagittal
-    away = v_min(away, v_select(back & v_gt(p.z, (vfloat)(15.0f)), fabs(lambdoid), none));
-    away = v_min(away, v_select(side & v_gt(p.z, (vfloat)(8.0f)), fabs(squamous), none));
-    return v_clamp(1.3f - away, (vfloat)(0.0f), (vfloat)(1.0f));
-}
-
-// The braincase, a wall around the cavity, thinner at the temples, with sutures outside; the bones of the face; the walls of the orbits.
-static inline vfloat bone_distance(const vfloat* body, Vec3 p, Vec3 folded, uint key) {
-    vfloat cavity = body[CLVR_CAVITY], orbit = body[CLVR_ORBIT];
-    vfloat temple = ramp(folded.x, 48.0f, 60.0f) * ramp(p.z, 62.0f, 40.0f);
-    vfloat vault = cavity - fma(noise(p, 30.0f, key), (vfloat)(1.5f), fma(temple, (vfloat)(-2.2f), (vfloat)(6.0f)));
-    vmask surface = v_lt(fabs(vault), (vfloat)(4.0f));
-    if (v_any(surface)) vault = v_select(surface, fma(suture(p, key + 1), (vfloat)(1.1f), vault), vault);
-    vault = v_select(v_lt(p.z, (vfloat)(-22.0f)), (vfloat)(9.0f), vault); // none around the spinal canal
-    vfloat behind_rim = v_max(orbit - 2.0f, -66.0f - p.y);
-    vfloat bone = smooth_min(vault, body[CLVR_FACE], 5.0f, 0.05f);
-    bone = smooth_min(bone, behind_rim, 3.0f, 1.0f / 12.0f);
-    return smooth_max(smooth_max(bone, -cavity, 1.0f, 0.25f), -orbit, 2.0f, 0.125f);
 }
 
 // Brain matter over what fills the braincase besides.
@@ -88,12 +59,8 @@ static inline vfloat tissue(__constant const PhantomParams* params, const vfloat
 
     vfloat hu = paint((vfloat)(-1000.0f), flesh(p, skin, per_mm, key), inside(v_max(skin, -bared), 0.6f * per_mm));
 
-    vfloat bone = v_max(bone_distance(body, p, folded, key + 1), -window);
-    if (v_any(v_lt(bone, (vfloat)(2.0f)))) {
-        vfloat spongy = fma(noise(p, 3.3f, key + 3), (vfloat)(350.0f), (vfloat)(700.0f));
-        vfloat hard = fma(noise(p, 11.0f, key + 4), (vfloat)(160.0f), (vfloat)(1250.0f));
-        hu = paint(hu, paint(hard, spongy, inside(bone + 2.3f, 0.6f)), inside(bone, per_mm));
-    }
+    vfloat bone = v_max(bone_distance(cavity, orbit, body[CLVR_FACE], p, folded, key + 1), -window);
+    if (v_any(v_lt(bone, (vfloat)(2.0f)))) hu = paint(hu, bone_hu(bone, p, key + 3), inside(bone, per_mm));
     vmask socket = v_lt(orbit, (vfloat)(2.0f));
     if (v_any(socket)) {
         hu = paint_hu(hu, -85.0f, inside(v_max(v_max(orbit, skin + 4.0f), -bared), per_mm));
@@ -101,7 +68,7 @@ static inline vfloat tissue(__constant const PhantomParams* params, const vfloat
     }
     hu = paint_hu(hu, -1000.0f, inside(body[CLVR_AIR], per_mm));
     hu = paint_hu(hu, 48.0f, inside(body[CLVR_STRANDS], per_mm));
-    hu = paint(hu, paint_hu((vfloat)(2300.0f), 1500.0f, inside(teeth + 1.3f, per_mm)), inside(teeth, per_mm)); // enamel, dentin
+    hu = paint(hu, tooth_hu(teeth, per_mm), inside(teeth, per_mm));
     if (v_any(v_lt(cavity, (vfloat)(2.0f)))) {
         vfloat fluid = paint_hu((vfloat)(9.0f), -1000.0f, inside(window, per_mm));
         hu = paint(hu, brain(body, p, folded, fluid, per_mm, key + 5), inside(cavity, per_mm));

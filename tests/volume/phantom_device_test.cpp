@@ -1,40 +1,15 @@
 #include "host/volume/phantom.hpp"
 #include "runtime/error.hpp"
-#include "runtime/select.hpp"
-#include "runtime/sha256.hpp"
-#include "tests/reference/volume.hpp"
+#include "tests/volume/computed_volume.hpp"
 
 #include <gtest/gtest.h>
-
-#include <string_view>
 
 namespace clvr {
 namespace {
 
+using namespace testing;
+
 constexpr Int3 odd_dims{45, 37, 53}, half_dims{88, 110, 116};
-
-Device open_device() { return Device::open(select_devices().devices.at(0)); }
-
-std::string hash_of(const Voxels& v) { return sha256_hex(std::string_view(reinterpret_cast<const char*>(v.bytes.data()), v.bytes.size())); }
-
-/// Mean Hounsfield units of the voxels around a place [mm], which the noise does not move by more than 10.
-double hounsfield(const Voxels& v, const Double3& pos_world) {
-    const Double3 p = v.geometry.to_index(pos_world);
-    double sum = 0;
-    for (int k = 0; k < 27; ++k)
-        sum +=
-            reference::stored_at(v, {static_cast<int>(std::lround(p[0])) + k % 3 - 1, static_cast<int>(std::lround(p[1])) + k / 3 % 3 - 1,
-                                     static_cast<int>(std::lround(p[2])) + k / 9 - 1});
-    return v.slope * sum / 27 + v.intercept;
-}
-
-/// Greatest Hounsfield units along a line.
-double greatest(const Voxels& v, const Double3& from, const Double3& to) {
-    double most = -HUGE_VAL;
-    for (int k = 0; k <= 200; ++k)
-        most = std::max(most, v.slope * reference::interpolate(v, v.geometry.to_index(from + (to - from) * (k / 200.0))) + v.intercept);
-    return most;
-}
 
 TEST(Phantom, HasTheSameBitsAtEveryPacketWidthAndGroup) {
     Device device = open_device();
@@ -63,15 +38,6 @@ TEST(Phantom, OthersHaveTheSameBitsAtEveryPacketWidth) {
 
 TEST(Phantom, OthersHaveTheirPartsWhereTheyBelong) {
     Device device = open_device();
-    /// Share of the voxels above some Hounsfield units.
-    const auto above = [](const Voxels& v, double hu) {
-        std::size_t n = 0;
-        with_voxel_type(v.type, [&](auto sample) {
-            using T = decltype(sample);
-            for (std::size_t i = 0; i < v.count(); ++i) n += v.slope * static_cast<double>(v.data<T>()[i]) + v.intercept > hu;
-        });
-        return static_cast<double>(n) / static_cast<double>(v.count());
-    };
     const Voxels beetle = make_phantom(device, "beetle", {Int3{208, 208, 124}});
     EXPECT_EQ(beetle.type, VoxelType::u16);
     EXPECT_GT(greatest(beetle, {0.6, 15, 5}, {0.6, 15, 12}), 0);  // wing case above,
