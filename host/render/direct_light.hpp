@@ -8,8 +8,8 @@ namespace clvr {
 /// The scene's lights of one direction: key light, headlight, the suns of its environment; those without power are left out.
 std::vector<shared::KeyLight> key_lights(const shared::RenderParams& params, const SkySplit& sky);
 
-/// Sky light in a volume: spherical harmonics at corners 2 voxels apart, or more so that there are at most 2^16 (9 MiB): 8 in 256^3. It depends on the
-/// volume, its classification and the environment, not on the camera.
+/// Sky light in a volume: spherical harmonics at corners 2 voxels apart, or more so that there are at most 2^16 (9 MiB): 8 in 256^3. It
+/// depends on the volume, its classification and the environment, not on the camera.
 class SkyLight {
 public:
     /// Marches from the corners near anything visible. Throws Error{memory}.

@@ -4,13 +4,14 @@
 #include "shared/types.h"
 CLVR_SHARED_BEGIN
 
-#define CLVR_KEYS_MAX 6       ///< key light, headlight, suns of an environment image
-#define CLVR_SKY_TERMS 9      ///< real spherical harmonics up to order 2
+#define CLVR_KEYS_MAX 6        ///< key light, headlight, suns of an environment image
+#define CLVR_SKY_TERMS 9       ///< real spherical harmonics up to order 2
 #define CLVR_SKY_DIRECTIONS 64 ///< a multiple of every packet width
 
 /// Light from one direction, or from a small disc around it. World space, unit vectors.
 typedef struct KeyLight {
-    float4 direction;  ///< towards the light; w: sine of the radius of the disc's circle that halves its solid angle (0: a directional light)
+    float4
+        direction; ///< towards the light; w: sine of the radius of the disc's circle that halves its solid angle (0: a directional light)
     float4 right, up;  ///< with `direction` an orthonormal frame
     float4 irradiance; ///< linear RGB, of a surface that faces the light
 } KeyLight;
