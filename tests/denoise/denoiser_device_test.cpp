@@ -172,6 +172,60 @@ TEST(Denoiser, GoesBackToTheInputWhereThatHasConverged) {
     EXPECT_GT(between, 1000u);
 }
 
+TEST(Denoiser, KeepsLightThatTheFeatureRaysMissedAsFarAsItHasConverged) {
+    Frame frame = noisy_frame(40, 30);
+    for (const char* c : {"R", "G", "B"}) frame.channel(std::string("variance.") + c).assign(frame.pixels(), 1.0f);
+    const std::size_t sure = 2 * 40 + 3, unsure = 2 * 40 + 9, half_seen = 2 * 40 + 15; // in the corner, where nothing is
+    for (const std::size_t i : {sure, unsure, half_seen}) {
+        ASSERT_EQ(frame.at("opacity.A")[i], 0);
+        frame.channel("A")[i] = 0.5f;
+        for (const char* c : {"R", "G", "B"}) {
+            frame.channel(c)[i] = 0.016f;
+            frame.channel(std::string("variance.") + c)[i] = i == unsure ? 0.016f * 0.016f : 1e-9f;
+        }
+    }
+    frame.channel("opacity.A")[half_seen] = 0.125f;
+    const Device device = test_device();
+    const Frame done = Denoiser(device, test_model()).denoise(frame);
+    EXPECT_NEAR(done.at("G")[sure], 0.016, 1e-5);
+    EXPECT_NEAR(done.at("A")[sure], 0.5, 1e-4);
+    EXPECT_EQ(done.at("A")[unsure], 0);
+    EXPECT_LT(done.at("G")[unsure], 1e-6);
+    EXPECT_GT(done.at("A")[half_seen], 0.2);
+    EXPECT_LT(done.at("A")[half_seen], 0.4);
+    // Under a background, what is there hides it.
+    for (const char* c : {"R", "G", "B"}) {
+        frame.channel(std::string("background.") + c).assign(frame.pixels(), 1.0f);
+        for (std::size_t i = 0; i < frame.pixels(); ++i) frame.channel(c)[i] += 1 - frame.at("A")[i];
+    }
+    EXPECT_NEAR(Denoiser(device, test_model()).denoise(frame).at("G")[sure], 0.016 + 0.5, 1e-4);
+}
+
+Model light_model() {
+    Model m = test_model();
+    m.control_variate = true;
+    m.channels.push_back("known.G");
+    initialise(m, 5);
+    return m;
+}
+
+TEST(Denoiser, ReturnsWhatIsKnownOfTheLight) {
+    Frame frame = noisy_frame(60, 44);
+    for (const char* c : {"R", "G", "B"})
+        for (std::size_t i = 0; i < frame.pixels(); ++i)
+            frame.channel(c)[i] = frame.at(std::string("light.key.") + c)[i] + frame.at(std::string("light.sky.") + c)[i];
+    const Frame done = Denoiser(test_device(), light_model()).denoise(frame);
+    for (const char* c : {"R", "G", "B"})
+        for (std::size_t i = 0; i < frame.pixels(); ++i) ASSERT_NEAR(done.at(c)[i], frame.at(c)[i], 2e-5) << c << i;
+}
+
+TEST(Denoiser, WithKnownLightGivesTheSameBitsInTiles) {
+    const Frame frame = noisy_frame(140, 170);
+    const std::string hash = denoised_hash({}, frame, light_model());
+    EXPECT_EQ(denoised_hash({{"denoise_mib", 5}}, frame, light_model()), hash);
+    for (const int width : {1, 8}) EXPECT_EQ(denoised_hash({{"conv_width", width}}, frame, light_model()), hash) << width;
+}
+
 TEST(Denoiser, NeverSeesTheBackground) {
     Frame frame = noisy_frame(60, 44), laid = frame;
     for (const char* c : {"R", "G", "B"}) {
