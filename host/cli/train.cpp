@@ -54,7 +54,7 @@ Model start_of(const Options& o) {
         for (const auto& [name, given] : {std::pair("--channels", &o.channels), {"--levels", &o.levels}})
             if (!given->empty()) throw Error(ErrorKind::usage, "is set by the model of --init; leave one of them out", name);
         Model m = read_model(o.init);
-        if (o.control_variate) m.control_variate = true;
+        if (o.control_variate) add_known_light(m);
         return m;
     }
     Model m = o.plain ? Model() : default_settings();
@@ -73,11 +73,11 @@ Model start_of(const Options& o) {
     m.kernel = o.kernel;
     if (o.no_demodulation) m.demodulation = false;
     if (o.no_opacity_weight) m.opacity_weight = false;
-    if (o.control_variate) m.control_variate = true;
     if (m.hidden < 1 || m.hidden > 256) throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to 256", m.hidden), "--hidden");
     if (m.kernel < 1 || m.kernel > 15 || m.kernel % 2 == 0)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected an odd number, 1 to 15", m.kernel), "--kernel");
     initialise(m, o.trainer.seed);
+    if (o.control_variate) add_known_light(m);
     return m;
 }
 
@@ -189,7 +189,7 @@ void add_train_command(CLI::App& app) {
     c->add_flag("--no-opacity-weight", o->no_opacity_weight, "Without weights by opacity.A, which other renderers' files lack")
         ->group("Model");
     c->add_flag("--control-variate", o->control_variate,
-                "Take the light that is known without noise off before the filter and add it after: frames with light.* channels")
+                "Take the light that is known without noise off before the filter and add it after; read it as three channels more")
         ->group("Model");
     c->footer("Examples:\n"
               "  clvr train pairs -o mine.safetensors --init default --patch 128 --batch 8 --epochs 40\n"

@@ -90,6 +90,21 @@ void initialise(Model& m, std::uint64_t seed) {
     m.conv2_bias.assign(out, 0);
 }
 
+void add_known_light(Model& m) {
+    if (m.control_variate) return;
+    m.control_variate = true;
+    const std::size_t taps = static_cast<std::size_t>(m.kernel) * m.kernel, before = m.channels.size();
+    for (const char* name : {"known.R", "known.G", "known.B"})
+        if (std::find(m.channels.begin(), m.channels.end(), name) == m.channels.end()) m.channels.emplace_back(name);
+    std::vector<float> wider;
+    for (std::size_t h = 0; h < static_cast<std::size_t>(m.hidden); ++h) {
+        const auto row = m.conv1_weight.begin() + static_cast<std::ptrdiff_t>(h * before * taps);
+        wider.insert(wider.end(), row, row + static_cast<std::ptrdiff_t>(before * taps));
+        wider.resize(wider.size() + (m.channels.size() - before) * taps);
+    }
+    m.conv1_weight = std::move(wider);
+}
+
 void validate_levels(const std::vector<Model::Level>& levels) {
     check_range("the number of levels", static_cast<int>(levels.size()), 1, CLVR_LEVELS_MAX);
     for (const auto& level : levels) {

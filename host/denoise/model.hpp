@@ -52,6 +52,10 @@ Model default_settings();
 /// Sizes the tensors and draws them as the reference does: Glorot uniform kernels, zero biases. The same bits for a seed on every machine.
 void initialise(Model& model, std::uint64_t seed);
 
+/// Makes the model take known light off before its grids and read it as three more channels, whose weights are 0: before it is trained on,
+/// its guides are what they were. A model that does so already stays as it is.
+void add_known_light(Model& model);
+
 /// Throws Error{input} naming the first thing that is wrong: no channels, unknown or doubled ones, sizes out of range (channels 1..64,
 /// hidden 1..256, kernel odd 1..15, levels 1..8 with pixels 1..64 and codes 4..256), tensors of other sizes, non-finite weights.
 void validate(const Model& model);

@@ -63,6 +63,24 @@ TEST(KnownLight, IsFiniteWhateverTheFrameHolds) {
     for (std::size_t i = 0; i < f.pixels(); ++i) ASSERT_TRUE(std::isfinite(known(0, i))) << i;
 }
 
+TEST(AddKnownLight, LeavesTheWeightsOfTheOtherChannels) {
+    Model m = default_settings();
+    m.hidden = 3, m.kernel = 3;
+    initialise(m, 9);
+    const Model before = m;
+    add_known_light(m);
+    EXPECT_NO_THROW(validate(m));
+    ASSERT_EQ(m.channels.size(), before.channels.size() + 3);
+    EXPECT_EQ(m.channels.back(), "known.B");
+    const std::size_t old_row = before.channels.size() * 9, row = m.channels.size() * 9;
+    for (std::size_t h = 0; h < 3; ++h)
+        for (std::size_t k = 0; k < row; ++k)
+            ASSERT_EQ(m.conv1_weight[h * row + k], k < old_row ? before.conv1_weight[h * old_row + k] : 0);
+    const Model once = m;
+    add_known_light(m);
+    EXPECT_EQ(m.flat(), once.flat());
+}
+
 TEST(ChannelPlan, NamesTheChannelsThatKnownLightLacks) {
     Model m = default_settings();
     m.control_variate = true;
