@@ -1,7 +1,7 @@
 #!/bin/bash
 # Makes the models inside clvr again: volumes that clvr computes, views of each in five kinds of light, then the training.
 # Usage: [CLVR_LEAVE_OUT="KIND..."] train_default_model.sh DIR [CLVR [default|small]]
-#   default   the model that reads all channels of clvr's frames, of 26 views a volume
+#   default   the model that reads all channels of clvr's frames, of 26 views a volume; on the way to it `features`, which reads no light
 #   small     those for other renderers' pictures, color and color-albedo-normal, of 9 views a volume with references of half the samples;
 #             the ones in datasets/models had fewer epochs and volumes: datasets/results/small_models.md
 # CLVR_LEAVE_OUT names kinds of volumes (the list below) not to train on, as "machine rock", to cross-validate. The models go to
@@ -102,7 +102,8 @@ two_passes() {
     pass "$model" 16 5e-4 1 --init "$made/$model-first.safetensors" --loss shifted-gamma-l2
 }
 if [ "$models" = default ]; then
-    two_passes default
+    two_passes features # for frames without light, as clvr wrote them before
+    pass default 18 5e-4 3 --init "$made/features.safetensors" --control-variate --loss shifted-gamma-l2
 else
     # Other renderers' files do not say the samples per pixel and hold no opacity free of noise.
     two_passes color --channels R,G,B --no-opacity-weight

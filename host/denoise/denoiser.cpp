@@ -148,9 +148,9 @@ void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
 }
 
 /// Gives light back to pixels whose feature rays missed what the paths met: structures thinner than a pixel, where opacity.A is 0 or nearly
-/// so and the result with it. Of the difference d to the input the share 1 - 4 v / d^2 comes back, v the input's variance (the positive-part
-/// James-Stein form, at two standard errors): nothing at few samples, all where it has converged; less the more the feature rays saw, nothing
-/// from a quarter on, one of four. A and the colours take the same share.
+/// so and the result with it. Of the difference d to the input the share 1 - 4 v / d^2 comes back, v the input's variance (the
+/// positive-part James-Stein form, at two standard errors): nothing at few samples, all where it has converged; less the more the feature
+/// rays saw, nothing from a quarter on, one of four. A and the colours take the same share.
 void give_back_missed_light(const Frame& noisy, Frame& done) {
     const std::vector<float>*opacity = noisy.find("opacity.A"), *alpha = noisy.find("A");
     if (!opacity || !alpha) return;

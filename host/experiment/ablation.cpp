@@ -176,6 +176,11 @@ const std::vector<AblationRow>& ablation_rows() {
         all.push_back({"noise", "full set with noise level", true, noise});
         noise.opacity_weight = true;
         all.push_back({"opacity-weight-noise", "full set with both of these", false, noise});
+        Model light = noise;
+        light.channels.insert(light.channels.end(), {"known.R", "known.G", "known.B"});
+        all.push_back({"known-light-channels", "with both and known light as channels", false, light});
+        light.control_variate = true;
+        all.push_back({"known-light", "with both and known light taken off, too", false, light});
         return all;
     }();
     return rows;

@@ -17,8 +17,9 @@ struct AblationRow {
 };
 
 /// Rows 1 to 5 add up: colour, albedo, normal, depth, and with opacity, depth deviation and half depth the full set. Rows 6 to 8 change one
-/// thing of the full set: no demodulation by the albedo, pixels weighted by opacity in the splat, the noise level as a channel. A ninth,
-/// only on demand, has both opacity weights and noise level. All have the exposure and the albedo floor of clvr's default.
+/// thing of the full set: no demodulation by the albedo, pixels weighted by opacity in the splat, the noise level as a channel. On demand
+/// alone: both opacity weights and noise level; these with the known light (KnownLight) as channels; and with it taken off as well. All
+/// have the exposure and the albedo floor of clvr's default.
 const std::vector<AblationRow>& ablation_rows();
 
 struct AblationSettings {

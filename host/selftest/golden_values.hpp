@@ -12,14 +12,14 @@ namespace clvr::selftest {
 /// pixel_hash of each golden scene (golden_scene), the denoised one's of golden_denoised, the rendered and denoised one's of
 /// golden_picture.
 inline const std::map<std::string, std::string> golden_hashes{
-    {"automatic", "c2a4b0e609df7059bf1402f74e54281082c73a3ea4fb8869b69a45aa29b1e3f8"},
-    {"dvr", "a42f602b068eee1382788339324d13cd17927f126d2a250cc2ae87bf0974fd83"},
-    {"gradient", "e8ff84e9c27630de5956183abaf51cad2765acd2b5acad4faab8d1730ecef78c"},
+    {"automatic", "0ade34065286595417e1adbb64da0f7f9a81f4e6ab7e94578e7a7c4e3178f053"},
+    {"dvr", "4b5c74f8f5e03ee0ec1241c1bcd2fac4a9698986b4640385a44696cb2cae79cf"},
+    {"gradient", "21686abe4ca8306c15e908b5ae743283a113b33ae8d66d8c1af05e3e8fac66a6"},
     {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
-    {"phase", "161eec712a5d0be681c8c15520a6a2164ab966e4ee0f4c78d77c018e1dbc1389"},
+    {"phase", "4e24a21fd50e5e2d06c97be4f69bf321fd8b0cea51c1a07964254493174c4979"},
 };
 inline const std::string golden_denoised_hash = "f96ec492ce7dc7c59752268c3ac332b6b87db09397b1cf84bb0eaa3f572694bf";
-inline const std::string golden_picture_hash = "dd4f430034ea071c6c158303fcadb57b295b5a14cc139b9df01dce44a3bee72d";
+inline const std::string golden_picture_hash = "dba809e2b5f0a2cf0cff70766464d18dab0bd8e41a76b5eaa4f92e5605a30368";
 
 /// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
 inline const std::array<std::pair<const char*, const char*>, 5> golden_functions{{

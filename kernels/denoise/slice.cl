@@ -22,9 +22,9 @@ __kernel void slice(__constant DenoiseParams* p, __global const float* planes, _
 #define STORE(c, v) v_store(v_select(inside, v, (vfloat)(0.0f)), out + plane_start(p, n, channels, c) + at)
 
 #if CLVR_KNOWN
-#define WITH_KNOWN(k, v) ((v) + v_load(known + plane_start(p, n, 3, k) + at))
+#define LIT(k, v, factor) fma(v, factor, v_load(known + plane_start(p, n, 3, k) + at))
 #else
-#define WITH_KNOWN(k, v) (v)
+#define LIT(k, v, factor) ((v) * (factor))
 #endif
 
     vfloat rest = (vfloat)(1.0f);
@@ -41,12 +41,12 @@ __kernel void slice(__constant DenoiseParams* p, __global const float* planes, _
         blended.g = fma(share, sliced.g, blended.g);
         blended.b = fma(share, sliced.b, blended.b);
 #if CLVR_SHOW
-        STORE(3 + 3 * l, WITH_KNOWN(0, sliced.r * albedo.r));
-        STORE(4 + 3 * l, WITH_KNOWN(1, sliced.g * albedo.g));
-        STORE(5 + 3 * l, WITH_KNOWN(2, sliced.b * albedo.b));
+        STORE(3 + 3 * l, LIT(0, sliced.r, albedo.r));
+        STORE(4 + 3 * l, LIT(1, sliced.g, albedo.g));
+        STORE(5 + 3 * l, LIT(2, sliced.b, albedo.b));
 #endif
     }
-    STORE(0, WITH_KNOWN(0, blended.r * albedo.r));
-    STORE(1, WITH_KNOWN(1, blended.g * albedo.g));
-    STORE(2, WITH_KNOWN(2, blended.b * albedo.b));
+    STORE(0, LIT(0, blended.r, albedo.r));
+    STORE(1, LIT(1, blended.g, albedo.g));
+    STORE(2, LIT(2, blended.b, albedo.b));
 }

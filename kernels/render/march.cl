@@ -62,7 +62,7 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
     t0 = v_select(active, t0, (vfloat)(0.0f)), t1 = v_select(active, t1, (vfloat)(0.0f));
     vint k = (vint)(0);
 #if CLVR_MARCH == 0
-    LitSums lit = no_light(number);
+    LitSums lit = no_light();
 #endif
     for (;;) {
         Int3 i;
@@ -86,7 +86,7 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
             color = scaled(color, lit);
 #endif
 #if CLVR_MARCH == 0
-            add_lit_sample(&lit, &sums->light, number, seen, w, t, step, dir_world, color, normal, surface_chance(vol->p, steepness), render->phase_g);
+            add_lit_sample(&lit, &sums->light, number, seen, w, t, dir_world, color, normal, surface_chance(vol->p, steepness), render->phase_g);
 #endif
             sums->weight = fma(transmitted, absorbed, sums->weight);
             sums->color = add_where(seen, sums->color, color, w);

@@ -9,13 +9,14 @@ using testing::HasSubstr;
 
 TEST(AblationRows, AddUpThenChangeOneThing) {
     const auto& rows = ablation_rows();
-    ASSERT_EQ(rows.size(), 9u);
-    const std::size_t channels[] = {3, 6, 9, 10, 13, 13, 13, 14, 14};
+    ASSERT_EQ(rows.size(), 11u);
+    const std::size_t channels[] = {3, 6, 9, 10, 13, 13, 13, 14, 14, 17, 17};
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const Model& m = rows[k].model;
         EXPECT_EQ(m.channels.size(), channels[k]) << rows[k].name;
         EXPECT_EQ(m.demodulation, rows[k].name != "no-demodulation");
-        EXPECT_EQ(m.opacity_weight, k == 6 || k == 8);
+        EXPECT_EQ(m.opacity_weight, k == 6 || k >= 8);
+        EXPECT_EQ(m.control_variate, rows[k].name == "known-light");
         EXPECT_EQ(std::count(m.channels.begin(), m.channels.end(), "noise"), k >= 7 ? 1 : 0);
         EXPECT_TRUE(m.exposure);
         EXPECT_EQ(rows[k].standard, k < 8);
