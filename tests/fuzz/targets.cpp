@@ -100,7 +100,7 @@ void check_frame(const Frame& frame) {
 void exr(const std::string& path) {
     const Frame frame = read_exr(path);
     check_frame(frame);
-    if (frame.pixels() > 1u << 16) return;
+    if (std::max(frame.pixels(), frame.shown().pixels()) > 1u << 16) return;
     if (frame.has("R") && frame.has("G") && frame.has("B")) encode_png(frame, {});
     static const Model model = read_model("default");
     const ChannelPlan plan(model, false);
