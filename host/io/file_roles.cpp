@@ -52,7 +52,8 @@ Roles& roles() {
     return all;
 }
 
-/// What `among` knows of the file. One that was removed or replaced since it was named is forgotten: its inode may be another's now.
+/// What `among` knows of the file. A file that was removed or replaced since it was named is forgotten: its inode may be another file's
+/// now.
 const Named* find(std::map<Identity, Named>& among, const Identity& file) {
     const auto found = among.find(file);
     if (found == among.end()) return nullptr;
