@@ -12,14 +12,15 @@ namespace clvr {
 namespace {
 
 constexpr std::size_t largest_shown = std::size_t{1} << 28; // 16384 x 16384, the largest picture that clvr renders
+constexpr int largest_shown_side = 65536;
 
 } // namespace
 
 Frame shown_part(const Frame& frame) {
     const Region to = frame.shown(), from = frame.window();
-    if (to.pixels() > largest_shown)
-        throw Error(ErrorKind::input,
-                    fmt::format("shows {} x {} pixels (its display window); expected at most 2^28 in all", to.width, to.height));
+    if (std::max(to.width, to.height) > largest_shown_side || to.pixels() > largest_shown)
+        throw Error(ErrorKind::input, fmt::format("shows {} x {} pixels (its display window); expected at most {} a side, 2^28 in all",
+                                                  to.width, to.height, largest_shown_side));
     Frame part = frame.blank();
     part.x = 0, part.y = 0, part.width = to.width, part.height = to.height;
     part.display.reset();

@@ -68,7 +68,7 @@ struct Frame {
 };
 
 /// The frame cut to shown(), with 0 in all channels where it has no pixels, and that part's corner as (0, 0). Throws Error{input}
-/// when that is more than 2^28 pixels.
+/// when that is more than 65536 pixels a side, or 2^28.
 Frame shown_part(const Frame& frame);
 
 /// SHA-256 (hex) over size, channel names in order and the bits of every pixel; attributes do not count.

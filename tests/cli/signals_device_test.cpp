@@ -22,12 +22,13 @@ protected:
         fs::create_directory(temporary);
     }
 
-    /// Begins a picture that takes for ever; returns when some of its samples are done.
+    /// Begins a picture that takes for ever; returns when some of its samples are done, which without stored kernels may take more than a
+    /// minute on a busy machine.
     Child begin(const std::function<void()>& prepare = {}, const Environment& more = {}) const {
         Environment environment{{"TMPDIR", temporary}};
         environment.insert(more.begin(), more.end());
         Child child = start({"-v", "render", ball(), "-o", picture, "--size", "32x32", "--spp", "1000000"}, environment, prepare);
-        for (int k = 0; k < 3000 && child.err().find("samples per pixel done") == std::string::npos; ++k)
+        for (int k = 0; k < 15000 && child.err().find("samples per pixel done") == std::string::npos; ++k)
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         return child;
     }

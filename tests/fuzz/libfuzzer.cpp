@@ -1,5 +1,6 @@
 // libFuzzer's entry points. The program's own name chooses the reader: fuzz_nifti runs the target "nifti". With the argument --targets it
 // writes the names of all.
+#include "tests/fuzz/children.hpp"
 #include "tests/fuzz/targets.hpp"
 #include "tests/runtime/scoped.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 
 struct Run {
     const clvr::test::FuzzTarget* target;
-    clvr::TemporaryFolder folder;
+    clvr::TemporaryFolder folder, reports;
 };
 std::unique_ptr<Run> run;
 
@@ -29,7 +30,8 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
         std::fprintf(stderr, "call it by a link named fuzz_READER; --targets lists the readers\n");
         std::exit(2);
     }
-    run.reset(new Run{&clvr::test::fuzz_target(name.substr(prefix.size())), {}});
+    run.reset(new Run{&clvr::test::fuzz_target(name.substr(prefix.size())), {}, {}});
+    clvr::test::watch_children(run->reports.path().string());
     return 0;
 }
 
@@ -37,5 +39,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     // An empty input comes as a null pointer, which means "no such file" to read_bytes.
     clvr::test::read_bytes(*run->target, run->folder.path().string(),
                            size ? std::string_view(reinterpret_cast<const char*>(data), size) : "");
+    clvr::test::end_at_childs_report();
     return 0;
 }

@@ -119,6 +119,25 @@ TEST(EnvironmentImageTest, ReadsOpenExr) {
     EXPECT_THAT(error_of([&] { read_environment_image(folder / "b.exr"); }).line(), HasSubstr("no channel B"));
 }
 
+TEST(EnvironmentImageTest, IsWhatItsFileShows) {
+    const Folder folder;
+    Frame frame = test::noise(4, 2, {"R", "G", "B"});
+    for (auto& channel : frame.channels)
+        for (float& x : channel.second) x += 1;
+    frame.display = Region{-1, 0, 32, 16};
+    write_exr(frame, folder / "part.exr");
+    const RgbImage image = read_environment_image(folder / "part.exr");
+    ASSERT_EQ(std::make_pair(image.width, image.height), std::make_pair(32, 16));
+    EXPECT_EQ(image.rgb[0], 0);
+    EXPECT_EQ(image.rgb[3 * (32 + 1)], frame.at("R")[4]);
+    frame.display = Region{0, 0, 64, 16};
+    write_exr(frame, folder / "spot.exr");
+    EXPECT_THAT(error_of([&] { read_environment_image(folder / "spot.exr"); }).line(), HasSubstr("64 x 16"));
+    frame.display = Region{0, 0, 1 << 25, 1}; // 439 bytes took a minute
+    write_exr(frame, folder / "line.exr");
+    EXPECT_THAT(error_of([&] { read_environment_image(folder / "line.exr"); }).line(), HasSubstr("33554432 x 1"));
+}
+
 TEST(EnvironmentImageTest, NamesThePixelThatIsNoRadiance) {
     const Folder folder;
     for (float bad : {-0.5f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {

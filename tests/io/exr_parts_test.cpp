@@ -162,6 +162,8 @@ TEST(ExrWindowsTest, PicturesShowTheDisplayWindow) {
     EXPECT_THAT(back.at("A"), ElementsAre(0, 0, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0));
     frame.display = Region{0, 0, 1 << 20, 1 << 20};
     EXPECT_THAT(error_of([&] { write_png(frame, {}, folder / "c.png"); }).line(), HasSubstr("1048576 x 1048576"));
+    frame.display = Region{0, 0, 1 << 25, 1};
+    EXPECT_THAT(error_of([&] { write_png(frame, {}, folder / "c.png"); }).line(), HasSubstr("33554432 x 1 pixels"));
 }
 
 TEST(ExrKindsTest, LuminanceAndChroma) {

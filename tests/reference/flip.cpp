@@ -69,8 +69,8 @@ Eye eye(const Image& image, int width, int height) {
     }
     const double constants[3][4] = {{1, 0.0047, 0, 1e-5}, {1, 0.0053, 0, 1e-5}, {34.1, 0.04, 13.5, 0.025}};
     for (int c = 0; c < 3; ++c) {
-        const auto& [a1, b1, a2, b2] = constants[c];
-        const auto g = [&, a1 = a1, b1 = b1, a2 = a2, b2 = b2](int x, int y) {
+        const double a1 = constants[c][0], b1 = constants[c][1], a2 = constants[c][2], b2 = constants[c][3];
+        const auto g = [&](int x, int y) {
             const double d = (x * x + y * y) / (ppd * ppd);
             return a1 * std::sqrt(pi / b1) * std::exp(-pi * pi * d / b1) + a2 * std::sqrt(pi / b2) * std::exp(-pi * pi * d / b2);
         };

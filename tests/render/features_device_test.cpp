@@ -1,6 +1,8 @@
 // The noise-free features: against a march in double, their constants, the lattice under skipping, the step.
 #include "tests/render/marched.hpp"
 
+#include <algorithm>
+
 namespace clvr::testing {
 namespace {
 

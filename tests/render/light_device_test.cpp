@@ -4,6 +4,8 @@
 #include "tests/render/scenes.hpp"
 #include "tests/render/statistics.hpp"
 
+#include <algorithm>
+
 namespace clvr::testing {
 namespace {
 

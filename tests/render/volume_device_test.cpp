@@ -5,6 +5,8 @@
 #include "tests/render/statistics.hpp"
 #include "tests/volume/random_volume.hpp"
 
+#include <algorithm>
+
 namespace clvr::testing {
 namespace {
 

@@ -81,7 +81,7 @@ std::vector<Stage> transfer_stages() {
     for (const auto& [way, name] : {std::pair(Way::pageable, "pageable"), {Way::pinned, "pinned"}, {Way::mapped, "mapped"}})
         for (const bool to_device : {true, false})
             all.push_back({std::string(to_device ? "write, " : "read, ") + name, "GB/s", 1e9, Ceiling::none, "", true, "",
-                           [way = way, to_device](auto& d, Size s) { return transfer(d, s, way, to_device); }});
+                           [by = way, to_device](auto& d, Size s) { return transfer(d, s, by, to_device); }});
     return all;
 }
 

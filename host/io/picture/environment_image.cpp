@@ -21,6 +21,16 @@ RgbImage from_frame(const Frame& frame) {
     return image;
 }
 
+/// The frame, or its part that is shown. Light that comes from nowhere but a spot is an error of the file's windows.
+RgbImage from_shown(const Frame& frame) {
+    const Region shown = frame.shown(), window = frame.window();
+    if (shown == window) return from_frame(frame);
+    if (shown.pixels() / 64 > window.pixels())
+        refuse(fmt::format("shows {} x {} pixels (its display window), but has only {} x {} of them; store the whole environment",
+                           shown.width, shown.height, window.width, window.height));
+    return from_frame(shown_part(frame));
+}
+
 void check_radiances(const RgbImage& image) {
     for (std::size_t i = 0; i < image.rgb.size(); ++i)
         if (!(image.rgb[i] >= 0) || !std::isfinite(image.rgb[i]))
@@ -34,8 +44,7 @@ RgbImage read_environment_image(const std::string& path) {
     const PictureFormat format = picture_format(path);
     try {
         if (is_display_light(format)) refuse("is a picture of 8 bits; an environment is a Radiance .hdr, OpenEXR or PFM image");
-        const Frame frame = read_picture(path);
-        RgbImage image = from_frame(frame.shown() == frame.window() ? frame : shown_part(frame));
+        RgbImage image = from_shown(read_picture(path));
         check_radiances(image);
         return image;
     } catch (const Error& e) {
