@@ -224,7 +224,8 @@ void add_denoise_command(CLI::App& app) {
         ->type_name("FILE")
         ->group("Output");
     c->add_option("--model", o->model,
-                  "Trained network: a .safetensors file, or one inside clvr: default, color-albedo-normal, color [by what the picture has]")
+                  "Trained network: a .safetensors file, or one inside clvr: default, features, color-albedo-normal, color [by what the "
+                  "picture has]")
         ->type_name("FILE|NAME")
         ->group("Network");
     c->add_option("--spp", o->spp, "Samples per pixel of a frame that does not say it (another renderer's)")->group("Network");
