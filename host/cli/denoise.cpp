@@ -161,7 +161,7 @@ Model model_for(const Options& o, const std::optional<Model>& named, Frame& fram
     if (!named) {
         keep(add_normal(frame));
         const ModelChoice choice = choose();
-        if (choice.missing == std::vector<std::string>{"noise"})
+        if (choice.wants_samples)
             spdlog::info("{}: denoised by the model {}; --spp N, the samples per pixel, lets it take the one that reads more", o.input,
                          choice.name);
         else if (!choice.missing.empty())

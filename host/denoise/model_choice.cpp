@@ -16,6 +16,7 @@ ModelChoice choose_model(const std::vector<std::pair<std::string, Model>>& candi
             choice.name = name, choice.model = model;
             return choice;
         }
+        choice.wants_samples |= missing == std::vector<std::string>{"noise"};
     }
     if (candidates.empty()) throw Error(ErrorKind::usage, "there is no model inside this build: add --model FILE");
     ChannelPlan(candidates.back().second, false).check(frame);

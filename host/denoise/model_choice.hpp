@@ -13,6 +13,7 @@ struct ModelChoice {
     std::string name;
     Model model;
     std::vector<std::string> missing; ///< what the first candidate reads and the frame lacks; empty: it is chosen
+    bool wants_samples = false;       ///< a candidate before the chosen one lacks the samples per pixel alone
 };
 
 /// The first candidate whose channels the frame has. Throws Error{input} naming what the last one lacks when none suits.

@@ -52,7 +52,7 @@ protected:
 TEST_F(Denoising, ChoosesTheModelByWhatThePictureHas) {
     write_exr(noise(colours), path("rgb.exr"));
     const Outcome rgb = denoise("rgb.exr");
-    EXPECT_THAT(rgb.err, AllOf(HasSubstr("the model color;"), HasSubstr("it lacks albedo opacity normal depth noise\n")));
+    EXPECT_THAT(rgb.err, AllOf(HasSubstr("the model color;"), HasSubstr("it lacks albedo opacity light normal depth noise\n")));
     Frame clean = read_exr(path("d.exr"));
     EXPECT_EQ(clean.at("noisy.G"), noise(colours).at("G"));
     EXPECT_LT(spread(clean.at("R")), 0.5 * spread(clean.at("noisy.R"))) << "it takes noise away";
@@ -75,9 +75,9 @@ TEST_F(Denoising, ChoosesTheModelByWhatThePictureHas) {
                            "depth.deviation", "depth.half"});
     write_exr(noise(all), path("all.exr"));
     EXPECT_THAT(denoise("all.exr").err, AllOf(HasSubstr("the model color-albedo-normal;"), HasSubstr("--spp")));
-    EXPECT_THAT(denoise("all.exr", {"--spp", "4"}).err, HasSubstr("the model default\n"));
+    EXPECT_THAT(denoise("all.exr", {"--spp", "4"}).err, HasSubstr("the model features; for the one that reads the most it lacks light\n"));
     const std::string chosen = pixel_hash(read_exr(path("d.exr")));
-    denoise("all.exr", {"--spp", "4", "--model", "default"});
+    denoise("all.exr", {"--spp", "4", "--model", "features"});
     EXPECT_EQ(pixel_hash(read_exr(path("d.exr"))), chosen);
 
     const Outcome lacks = run({"denoise", path("rgb.exr"), "-o", path("e.exr"), "--model", "default"});
