@@ -38,7 +38,9 @@ double directional_albedo(double mu) {
 
 } // namespace
 
-std::vector<float> surface_lobe_table() {
+namespace {
+
+std::vector<float> make_table() {
     std::vector<double> e(intervals + 1);
     for (int k = 0; k <= intervals; ++k) e[k] = directional_albedo(std::max(1e-4, static_cast<double>(k) / intervals));
     double mean = 0; // exact for the piecewise linear table
@@ -48,6 +50,13 @@ std::vector<float> surface_lobe_table() {
     }
     std::vector<float> table(e.begin(), e.end());
     table.push_back(static_cast<float>(mean));
+    return table;
+}
+
+} // namespace
+
+const std::vector<float>& surface_lobe_table() {
+    static const std::vector<float> table = make_table();
     return table;
 }
 

@@ -4,8 +4,8 @@
 
 namespace clvr {
 
-/// [34]: directional albedo at cosine k/32, k = 0..32, then its cosine-weighted mean 2 * integral of E(mu) mu. Computed in double without
-/// libm.
-std::vector<float> surface_lobe_table();
+/// [34]: directional albedo at cosine k/32, k = 0..32, then its cosine-weighted mean 2 * integral of E(mu) mu. Computed once, in double
+/// without libm.
+const std::vector<float>& surface_lobe_table();
 
 } // namespace clvr

@@ -57,9 +57,7 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
     float rate = -vol->p->extinction * step;
     vfloat transmitted = (vfloat)(1.0f);
 #endif
-    clip_ray(vol->p, &ray, &t0, &t1);
-    vmask active = v_lt(t0, t1) & lanes;
-    t0 = v_select(active, t0, (vfloat)(0.0f)), t1 = v_select(active, t1, (vfloat)(0.0f));
+    vmask active = begin_march(vol, &ray, lanes, &t0, &t1);
     vint k = (vint)(0);
 #if CLVR_MARCH == 0
     LitSums lit = no_light();

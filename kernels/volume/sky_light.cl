@@ -31,11 +31,9 @@ __kernel void sky_light(VOLUME_ARGS, __global const float* coarse, SkyGrid grid,
             Vec3 to_light = vec3(v_gather_offset(d, v_iota * 4, 0), v_gather_offset(d, v_iota * 4, 1), v_gather_offset(d, v_iota * 4, 2));
             Ray ray = make_ray(vol.p, start, to_light);
             vfloat t0, t1, t, depth = (vfloat)(0.0f);
-            clip_ray(vol.p, &ray, &t0, &t1);
+            vmask active = begin_march(&vol, &ray, (vmask)(-1), &t0, &t1);
             // Steps of one coarse cell along the axis that the ray runs along most.
             vfloat step = (float)(1 << vol.p->coarse.w) / v_max(v_max(fabs(ray.d.x), fabs(ray.d.y)), fabs(ray.d.z));
-            vmask active = v_lt(t0, t1);
-            t0 = v_select(active, t0, (vfloat)(0.0f)), t1 = v_select(active, t1, (vfloat)(0.0f));
             vint k = (vint)(0);
             while (v_any(active)) {
                 Int3 i;
