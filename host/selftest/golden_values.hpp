@@ -12,14 +12,14 @@ namespace clvr::selftest {
 /// pixel_hash of each golden scene (golden_scene), the denoised one's of golden_denoised, the rendered and denoised one's of
 /// golden_picture.
 inline const std::map<std::string, std::string> golden_hashes{
-    {"automatic", "0ade34065286595417e1adbb64da0f7f9a81f4e6ab7e94578e7a7c4e3178f053"},
+    {"automatic", "856151609fda3dd29766af80d67bee69d633b13d62b3e0d79b8fc01abbc75aec"},
     {"dvr", "4b5c74f8f5e03ee0ec1241c1bcd2fac4a9698986b4640385a44696cb2cae79cf"},
-    {"gradient", "21686abe4ca8306c15e908b5ae743283a113b33ae8d66d8c1af05e3e8fac66a6"},
+    {"gradient", "971c3b7e491c113d872037239c0fefd6f90d50d598e6c1e1ea0d19144646dde2"},
     {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
-    {"phase", "4e24a21fd50e5e2d06c97be4f69bf321fd8b0cea51c1a07964254493174c4979"},
+    {"phase", "1391b485df0555d339fcd4330e68073dfade652fb4ceab40d9b1cd0602a51c1a"},
 };
 inline const std::string golden_denoised_hash = "f96ec492ce7dc7c59752268c3ac332b6b87db09397b1cf84bb0eaa3f572694bf";
-inline const std::string golden_picture_hash = "dba809e2b5f0a2cf0cff70766464d18dab0bd8e41a76b5eaa4f92e5605a30368";
+inline const std::string golden_picture_hash = "b32c2a32a77a9cfc11ba8be3017128e12e3d39e3b49b5aeb08512188df131562";
 
 /// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
 inline const std::array<std::pair<const char*, const char*>, 5> golden_functions{{

@@ -21,16 +21,16 @@ __kernel void free_flight(VOLUME_ARGS, __constant RenderParams* render, PATH_ARG
     for (uint n = 0; f.next < f.end || v_any(f.flying); ++n) {
         if (wants_paths(&f, n)) {
             if (v_any(f.held)) store_ends(&f, collided, origin);
-            collided &= v_not(take_paths(&vol, &f, n, active, path_id, origin, heading));
+            collided &= v_not(take_paths(&vol, &f, n, active, path_id, origin, heading, weight, origin));
         }
         if (!v_any(f.flying)) continue;
-        vfloat depth, choice;
-        collision_numbers(&f, n, bounce * 4 + CLVR_STREAM_FLIGHT, render, &depth, &choice);
-        f.flying = walk_depth(&vol, &f.walk, depth, f.flying);
+        f.flying = walk_depth(&vol, &f.walk, next_depth(&f, n, bounce * 2 + CLVR_STREAM_FLIGHT, render), f.flying);
         if (!v_any(f.flying)) continue;
         Int3 i;
         Vec3 p = stop_position(vol.p, &f.walk, &i);
-        vmask real = v_lt(choice * f.walk.majorant, opacity_of(&vol, stored_value_in(&vol, p, i))) & f.flying;
+        vfloat opacity = opacity_of(&vol, stored_value_in(&vol, p, i));
+        vmask real = v_lt(f.choice * f.walk.majorant, opacity) & f.flying;
+        keep_choice(&f, opacity, f.walk.majorant, f.flying & v_not(real));
         collided |= real;
         f.flying &= v_not(real);
     }

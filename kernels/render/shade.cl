@@ -2,8 +2,8 @@
 // One work-item an entry of `active`; state[entry] gets bit 0 for a path that goes on, bit 1 for a light sample to trace.
 #include "lib/light.clh"
 #include "lib/paths.clh"
-#include "lib/random.clh"
 #include "lib/scatter.clh"
+#include "lib/sobol.clh"
 #include "lib/volume.clh"
 
 #define ROULETTE_FROM 3 // bounces
@@ -34,21 +34,23 @@ __kernel void shade(VOLUME_ARGS, LIGHT_ARGS, __global const float* lobe, PATH_AR
     Vec3 p = vec3_of(at);
     Vec3 albedo = albedo_of(&vol, stored_value(&vol, p));
     uint2 id = path_id[path];
-    RandomBlock a = philox(id.x, id.y, 0u, bounce * 4 + CLVR_STREAM_SHADE, render->key0, render->key1);
-    RandomBlock b = philox(id.x, id.y, 1u, bounce * 4 + CLVR_STREAM_SHADE, render->key0, render->key1);
+    uint name = pixel_name(id.x, render);
+    float2 for_light = sobol_point(name, id.y, bounce * 4 + CLVR_POINTS_LIGHT), for_direction = sobol_point(name, id.y, bounce * 4 + CLVR_POINTS_DIRECTION);
 
     bool at_surface = false;
     Surface surface;
     if (vol.p->shading != 1) {
         Vec3 gradient = world_gradient(&vol, p);
         float steepness = sqrt(inner3(gradient, gradient));
-        at_surface = v_uniform(a.x) < surface_chance(vol.p, steepness);
+        float chance = surface_chance(vol.p, steepness);
+        at_surface = for_direction.x < chance;
+        for_direction.x = at_surface ? rescaled(for_direction.x, 0.0f, chance) : rescaled(for_direction.x, chance, 1.0f);
         if (at_surface) surface = make_surface(lobe, scaled(gradient, -1.0f / steepness), negated(dir), albedo);
     }
 
     Vec3 to_light, incoming;
     float light_density, own_density;
-    bool directional = light_sample(&light, v_uniform(a.y), v_uniform(a.z), v_uniform(a.w), &to_light, &incoming, &light_density);
+    bool directional = light_sample(&light, for_light.x, for_light.y, &to_light, &incoming, &light_density);
     Vec3 value;
     if (at_surface) value = surface_value(&surface, to_light, &own_density);
     else {
@@ -58,31 +60,38 @@ __kernel void shade(VOLUME_ARGS, LIGHT_ARGS, __global const float* lobe, PATH_AR
     // Balance heuristic: value L / light_density * light_density / (light_density + own_density).
     if (!directional) value = scaled(value, light_density > 0.0f ? 1.0f / (light_density + own_density) : 0.0f);
     Vec3 adds = product(product(throughput, value), incoming);
-    uint flags = greatest(adds) > 0.0f ? 2u : 0u;
-    shadow_heading[path] = (float4)(to_light.x, to_light.y, to_light.z, 0.0f);
-    shadow_light[path] = (float4)(adds.x, adds.y, adds.z, 0.0f);
+    uint flags = 0u;
+    if (greatest(adds) > 0.0f) {
+        float2 for_shadow = sobol_point(name, id.y, bounce * 4 + CLVR_POINTS_SHADOW);
+        shadow_heading[path] = (float4)(to_light.x, to_light.y, to_light.z, for_shadow.y);
+        shadow_light[path] = (float4)(adds.x, adds.y, adds.z, for_shadow.x);
+        flags = 2u;
+    }
 
     Vec3 next;
     if (at_surface) {
-        next = surface_sample(&surface, v_uniform(b.x), v_uniform(b.y), v_uniform(b.z));
+        next = surface_sample(&surface, for_direction.x, for_direction.y);
         value = surface_value(&surface, next, &own_density);
         throughput = product(throughput, scaled(value, own_density > 0.0f ? 1.0f / own_density : 0.0f));
     } else {
-        next = phase_sample(render->phase_g, dir, v_uniform(b.y), v_uniform(b.z));
+        next = phase_sample(render->phase_g, dir, for_direction.x, for_direction.y);
         own_density = phase_density(render->phase_g, inner3(dir, next));
         throughput = product(throughput, albedo);
     }
     float strength = greatest(throughput);
     if (strength > 0.0f) {
+        float2 for_flight = sobol_point(name, id.y, (bounce + 1) * 4 + CLVR_POINTS_FLIGHT);
         bool goes_on = true;
         if (bounce >= ROULETTE_FROM || strength < 0x1p-60f) {
             float survival = v_min(strength, bounce >= 1024 ? 0.999f : 1.0f); // an unlimited path in a white medium ends, too
-            goes_on = v_uniform(b.w) < survival;
+            goes_on = for_flight.x < survival;
+            for_flight.x = goes_on ? rescaled(for_flight.x, 0.0f, survival) : 0.0f;
             throughput = scaled(throughput, 1.0f / v_max(survival, 0x1p-100f));
         }
         if (goes_on) flags |= 1u;
         heading[path] = (float4)(next.x, next.y, next.z, own_density);
-        weight[path] = (float4)(throughput.x, throughput.y, throughput.z, 0.0f);
+        weight[path] = (float4)(throughput.x, throughput.y, throughput.z, for_flight.x);
+        origin[path].w = for_flight.y;
     }
     state[entry] = flags;
 }

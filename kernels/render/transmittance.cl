@@ -24,22 +24,21 @@ __kernel void transmittance(VOLUME_ARGS, __constant RenderParams* render, PATH_A
     for (uint n = 0; f.next < f.end || v_any(f.flying); ++n) {
         if (wants_paths(&f, n)) {
             if (v_any(f.held)) add_light(&f, transmitted, shadow_light, radiance);
-            transmitted = v_select(take_paths(&vol, &f, n, shadowed, path_id, origin, shadow_heading), (vfloat)(1.0f), transmitted);
+            transmitted = v_select(take_paths(&vol, &f, n, shadowed, path_id, origin, shadow_heading, shadow_light, shadow_heading), (vfloat)(1.0f), transmitted);
         }
         if (!v_any(f.flying)) continue;
-        vfloat depth, choice;
-        collision_numbers(&f, n, bounce * 4 + CLVR_STREAM_SHADOW, render, &depth, &choice);
-        f.flying = walk_depth(&vol, &f.walk, depth, f.flying);
+        f.flying = walk_depth(&vol, &f.walk, next_depth(&f, n, bounce * 2 + CLVR_STREAM_SHADOW, render), f.flying);
         if (!v_any(f.flying)) continue;
         Int3 i;
         Vec3 p = stop_position(vol.p, &f.walk, &i);
         vfloat passed = v_max(1.0f - opacity_of(&vol, stored_value_in(&vol, p, i)) / v_select(f.flying, f.walk.majorant, (vfloat)(1.0f)), (vfloat)(0.0f));
         transmitted = v_select(f.flying, transmitted * passed, transmitted);
         vmask weak = v_lt(transmitted, (vfloat)(0.0625f)) & f.flying;
-        vmask ends = (weak & v_lt(choice, (vfloat)(0.5f))) | v_le(transmitted, (vfloat)(0.0f));
+        vmask ends = (weak & v_lt(f.choice, (vfloat)(0.5f))) | v_le(transmitted, (vfloat)(0.0f));
         // fma: twice a product is the sum of two, which a compiler would fuse with the product.
         transmitted = v_select(weak, v_select(ends, (vfloat)(0.0f), fma(transmitted, (vfloat)(2.0f), (vfloat)(0.0f))), transmitted);
         f.flying &= v_not(ends);
+        keep_choice(&f, (vfloat)(0.5f), (vfloat)(1.0f), weak & f.flying);
     }
     if (v_any(f.held)) add_light(&f, transmitted, shadow_light, radiance);
 }

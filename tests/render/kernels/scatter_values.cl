@@ -2,7 +2,7 @@
 #include "lib/scatter.clh"
 
 // function 0: phase_sample(g, out, in.x, in.y), its density; 1: phase_density between the directions out and in;
-// 2: surface_sample(in.x, in.y, in.z), its density; 3: surface_value of the direction in, its density.
+// 2: surface_sample(in.x, in.y), its density; 3: surface_value of the direction in, its density.
 __kernel void scatter_values(__global const float* lobe, float g, float4 normal, float4 out, float4 albedo, __global const float4* in, __global float4* result,
                              uint count, int function) {
     uint i = (uint)get_global_id(0);
@@ -16,7 +16,7 @@ __kernel void scatter_values(__global const float* lobe, float g, float4 normal,
     }
     if (function == 1) density = phase_density(g, inner3(way, vec3_of(in[i])));
     if (function == 2) {
-        r = surface_sample(&s, in[i].x, in[i].y, in[i].z);
+        r = surface_sample(&s, in[i].x, in[i].y);
         surface_value(&s, r, &density);
     }
     if (function == 3) r = surface_value(&s, vec3_of(in[i]), &density);
