@@ -39,8 +39,8 @@ TEST(ClippedFurnace, IsOne) {
     expect_furnace(v, s, environment_tables(env_width, env_height, std::vector<float>(3 * env_width * env_height, 1.0f), 1));
 }
 
-/// Paths of a thousand scatterings, which the roulette of long white paths ends. Their weight is a product of a thousand that are 1 in the mean: a seed in
-/// five has a path that outweighs a tenth of the picture. This one has none.
+/// Paths of a thousand scatterings, which the roulette of long white paths ends. Their weight is a product of a thousand that are 1 in the
+/// mean: a seed in five has a path that outweighs a tenth of the picture. This one has none.
 TEST(DenseFurnace, IsOneBehindFiftyMeanFreePaths) {
     Scene s = furnace_scene(Shading::automatic, 0, 256);
     s.seed = 1;
