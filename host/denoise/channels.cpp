@@ -23,7 +23,8 @@ float noise_level(const Frame& frame) {
 } // namespace
 
 ChannelPlan::ChannelPlan(const Model& model, bool with_target)
-    : exposure_(model.exposure), weighted_(model.opacity_weight), known_(model.control_variate), albedo_floor_(model.albedo_floor) {
+    : exposure_(model.exposure), weighted_(model.opacity_weight), known_(model.control_variate), known_cell_(model.control_variate_cell),
+      albedo_floor_(model.albedo_floor) {
     const auto has = [&](const char* name) {
         return std::find(model.channels.begin(), model.channels.end(), name) != model.channels.end();
     };
@@ -102,7 +103,7 @@ BeautyWithoutBackground::BeautyWithoutBackground(const Frame& frame, const std::
 
 std::optional<KnownLight> ChannelPlan::known_light(const Frame& frame) const {
     if (std::none_of(planes_.begin(), planes_.end(), [](const std::string& name) { return known_colour(name) >= 0; })) return std::nullopt;
-    return KnownLight(frame);
+    return KnownLight(frame, known_cell_);
 }
 
 std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const Region& region, const std::optional<KnownLight>& known,

@@ -40,6 +40,7 @@ private:
     std::vector<std::string> planes_;
     std::vector<std::array<std::int32_t, 2>> channels_;
     bool exposure_, demodulate_, weighted_, known_;
+    int known_cell_;
     float albedo_floor_;
 
     int plane(const std::string& name) const; // its number, -1: not among them

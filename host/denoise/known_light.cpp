@@ -11,6 +11,7 @@ namespace {
 constexpr const char* colours[] = {"R", "G", "B"};
 constexpr double least_opacity = 1.0 / 256;
 constexpr double faith = 0.02; ///< what shares of 1, 1 and 0 weigh beside the pixels
+constexpr double spread = 0.2; ///< how far the shares of a cell are expected from the whole frame's
 
 /// Solves the positive definite system A x = b of three unknowns by Cholesky's decomposition; A's lower half is read.
 std::array<double, 3> solve(std::array<std::array<double, 3>, 3> a, std::array<double, 3> b) {
@@ -35,6 +36,57 @@ std::array<double, 3> solve(std::array<std::array<double, 3>, 3> a, std::array<d
 
 float finite(float v) { return std::isfinite(v) ? v : 0; }
 
+/// Weighted least squares of a value by three others, summed up.
+struct Sums {
+    std::array<std::array<double, 3>, 3> a{}; ///< lower half
+    std::array<double, 3> b{};
+    double squares = 0, count = 0;
+
+    void add(const std::array<double, 3>& v, double value, double weight) {
+        for (std::size_t r = 0; r < 3; ++r) {
+            for (std::size_t k = 0; k <= r; ++k) a[r][k] += weight * v[r] * v[k];
+            b[r] += weight * v[r] * value;
+        }
+        squares += weight * value * value;
+        count += 1;
+    }
+    void add(const Sums& s, double weight) {
+        for (std::size_t r = 0; r < 3; ++r) {
+            for (std::size_t k = 0; k <= r; ++k) a[r][k] += weight * s.a[r][k];
+            b[r] += weight * s.b[r];
+        }
+    }
+    /// What the shares leave of the squares, a value.
+    double left(const KnownLight::Shares& s) const {
+        const double x[3] = {s.key, s.sky, s.ambient};
+        double sum = squares;
+        for (std::size_t r = 0; r < 3; ++r) {
+            sum += x[r] * (x[r] * a[r][r] - 2 * b[r]);
+            for (std::size_t k = 0; k < r; ++k) sum += 2 * x[r] * x[k] * a[r][k];
+        }
+        return std::max(sum, 0.0) / std::max(count, 1.0);
+    }
+    /// The shares of least squares, where `expected` counts as if it had been seen with the weights `extra`.
+    KnownLight::Shares solved(const KnownLight::Shares& expected, const std::array<double, 3>& extra) const {
+        auto matrix = a;
+        auto right = b;
+        const double x[3] = {expected.key, expected.sky, expected.ambient};
+        for (std::size_t r = 0; r < 3; ++r) matrix[r][r] += extra[r], right[r] += extra[r] * x[r];
+        const auto found = solve(matrix, right);
+        return {std::clamp(found[0], 0.0, 4.0), std::clamp(found[1], 0.0, 4.0), std::clamp(found[2], -1.0, 1.0)};
+    }
+};
+
+/// Each cell becomes the sum of itself and half of its two neighbours `stride` apart in lines of n cells.
+void tent(std::vector<Sums>& cells, std::size_t n, std::size_t stride) {
+    const std::vector<Sums> before = cells;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const std::size_t i = c / stride % n;
+        if (i > 0) cells[c].add(before[c - stride], 0.5);
+        if (i + 1 < n) cells[c].add(before[c + stride], 0.5);
+    }
+}
+
 } // namespace
 
 const std::vector<std::string>& known_light_channels() {
@@ -43,40 +95,77 @@ const std::vector<std::string>& known_light_channels() {
     return names;
 }
 
-KnownLight::KnownLight(const Frame& frame) : opacity_(frame.at("opacity.A").data()) {
+KnownLight::KnownLight(const Frame& frame, int cell) : opacity_(frame.at("opacity.A").data()), width_(frame.width), cell_(cell) {
+    if (cell > 0) across_ = (frame.width + cell - 1) / cell, down_ = (frame.height + cell - 1) / cell;
     for (std::size_t c = 0; c < 3; ++c) {
-        const std::string colour = colours[c];
-        colours_[c] = {frame.at("light.key." + colour).data(), frame.at("light.sky." + colour).data(), frame.at("albedo." + colour).data()};
-        const BeautyWithoutBackground beauty(frame, colour);
-        std::array<std::array<double, 3>, 3> a{};
-        std::array<double, 3> b{};
-        for (std::size_t i = 0; i < frame.pixels(); ++i) {
-            const double opacity = finite(opacity_[i]), key = finite(colours_[c].key[i]), sky = finite(colours_[c].sky[i]),
-                         ambient = finite(colours_[c].albedo[i]) * opacity, noisy = finite(beauty(i));
-            if (!(opacity > least_opacity)) continue;
-            // Noise grows with light: relative errors count, of very dark pixels less.
-            const double scale = key + sky + 0.05 * ambient + 1e-6, weight = opacity / (scale * scale);
-            // One path that is a hundred times as bright as what is known must not decide.
-            const double v[3] = {key, sky, ambient}, value = std::min(noisy, 100 * scale);
-            for (int r = 0; r < 3; ++r) {
-                for (int k = 0; k <= r; ++k) a[r][k] += weight * v[r] * v[k];
-                b[r] += weight * v[r] * value;
-            }
-        }
-        const double expected[3] = {1, 1, 0}, all = a[0][0] + a[1][1] + a[2][2];
-        for (int r = 0; r < 3; ++r) {
-            const double extra = faith * a[r][r] + 1e-9 * all + 1e-30;
-            a[r][r] += extra;
-            b[r] += extra * expected[r];
-        }
-        const std::array<double, 3> x = solve(a, b);
-        shares_[c] = {std::clamp(x[0], 0.0, 4.0), std::clamp(x[1], 0.0, 4.0), std::clamp(x[2], -1.0, 1.0)};
+        const std::string name = colours[c];
+        colours_[c] = {
+            frame.at("light.key." + name).data(), frame.at("light.sky." + name).data(), frame.at("albedo." + name).data(), {}, {}};
+        fit(colours_[c], frame, name);
     }
+}
+
+void KnownLight::fit(Colour& colour, const Frame& frame, const std::string& name) const {
+    const BeautyWithoutBackground beauty(frame, name);
+    Sums all;
+    std::vector<Sums> cells(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
+    for (std::size_t i = 0; i < frame.pixels(); ++i) {
+        const double opacity = finite(opacity_[i]), key = finite(colour.key[i]), sky = finite(colour.sky[i]),
+                     ambient = finite(colour.albedo[i]) * opacity, noisy = finite(beauty(i));
+        if (!(opacity > least_opacity)) continue;
+        // Noise grows with light: relative errors count, of very dark pixels less.
+        const double scale = key + sky + 0.05 * ambient + 1e-6, weight = opacity / (scale * scale);
+        // One path that is a hundred times as bright as what is known must not decide.
+        const double value = std::min(noisy, 100 * scale);
+        all.add({key, sky, ambient}, value, weight);
+        if (cell_ > 0) {
+            const std::size_t edge = static_cast<std::size_t>(cell_), width = static_cast<std::size_t>(width_);
+            cells[i / width / edge * static_cast<std::size_t>(across_) + i % width / edge].add({key, sky, ambient}, value, weight);
+        }
+    }
+    const double total = all.a[0][0] + all.a[1][1] + all.a[2][2];
+    std::array<double, 3> extra{};
+    for (std::size_t r = 0; r < 3; ++r) extra[r] = faith * all.a[r][r] + 1e-9 * total + 1e-30;
+    colour.whole = all.solved({}, extra);
+    if (cell_ == 0) return;
+    // Bayes: a cell's shares are spread around the whole frame's, its values around its shares.
+    const double trust = all.left(colour.whole) / (spread * spread) / std::max(all.count, 1.0);
+    for (std::size_t r = 0; r < 3; ++r) extra[r] = trust * all.a[r][r] + 1e-9 * total + 1e-30;
+    tent(cells, static_cast<std::size_t>(across_), 1);
+    tent(cells, static_cast<std::size_t>(down_), static_cast<std::size_t>(across_));
+    for (const Sums& cell : cells) colour.cells.push_back(cell.solved(colour.whole, extra));
+}
+
+KnownLight::Shares KnownLight::shares_at(int colour, std::size_t pixel) const {
+    const Colour& c = colours_[static_cast<std::size_t>(colour)];
+    if (cell_ == 0) return c.whole;
+    // Of the cells' centres around the pixel's.
+    struct Between {
+        std::size_t low, high;
+        double t;
+    };
+    const auto between = [this](std::size_t at, int cells) {
+        const double place = (static_cast<double>(at) + 0.5) / cell_ - 0.5, last = cells - 1;
+        const double held = std::clamp(place, 0.0, last), low = std::floor(held);
+        return Between{static_cast<std::size_t>(low), static_cast<std::size_t>(std::min(low + 1, last)), held - low};
+    };
+    const std::size_t width = static_cast<std::size_t>(width_), across = static_cast<std::size_t>(across_);
+    const Between x = between(pixel % width, across_), y = between(pixel / width, down_);
+    Shares sum{0, 0, 0};
+    const auto add = [&](std::size_t column, std::size_t row, double weight) {
+        const Shares& s = c.cells[row * across + column];
+        sum.key += weight * s.key, sum.sky += weight * s.sky, sum.ambient += weight * s.ambient;
+    };
+    add(x.low, y.low, (1 - x.t) * (1 - y.t));
+    add(x.high, y.low, x.t * (1 - y.t));
+    add(x.low, y.high, (1 - x.t) * y.t);
+    add(x.high, y.high, x.t * y.t);
+    return sum;
 }
 
 float KnownLight::operator()(int colour, std::size_t pixel) const {
     const Colour& c = colours_[static_cast<std::size_t>(colour)];
-    const Shares& s = shares_[static_cast<std::size_t>(colour)];
+    const Shares s = shares_at(colour, pixel);
     return static_cast<float>(s.key * finite(c.key[pixel]) + s.sky * finite(c.sky[pixel]) +
                               s.ambient * finite(c.albedo[pixel]) * finite(opacity_[pixel]));
 }

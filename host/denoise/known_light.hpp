@@ -14,24 +14,34 @@ const std::vector<std::string>& known_light_channels();
 /// a key + b sky + c albedo opacity for each colour: the shares a, b, c are those whose sum is closest to the frame's noisy radiance, by
 /// weighted least squares over the pixels with opacity above 1/256. Light that was scattered more than once follows the direct light
 /// closely enough for shares above 1 to hold part of it. The sums run over the pixels in order, in double: the same bits everywhere.
+///
+/// `cell` > 0: the shares vary over the picture. Each cell of so many pixels a side has its own, fitted to itself and its neighbours (a
+/// tent) and held to the whole frame's as far as the noise asks; between the cells' centres they are bilinear. 0: the whole frame's
+/// everywhere.
 class KnownLight {
 public:
     struct Shares {
         double key = 1, sky = 1, ambient = 0;
     };
     /// The frame (all of known_light_channels() and R G B) outlives it.
-    explicit KnownLight(const Frame& frame);
+    explicit KnownLight(const Frame& frame, int cell = 0);
     /// `colour`: 0 R, 1 G, 2 B. Finite.
     float operator()(int colour, std::size_t pixel) const;
-    const Shares& shares(int colour) const { return shares_[static_cast<std::size_t>(colour)]; }
+    /// Those of the whole frame.
+    const Shares& shares(int colour) const { return colours_[static_cast<std::size_t>(colour)].whole; }
+    Shares shares_at(int colour, std::size_t pixel) const;
 
 private:
     struct Colour {
         const float *key, *sky, *albedo;
+        Shares whole;
+        std::vector<Shares> cells; ///< [down_][across_]
     };
+    void fit(Colour& colour, const Frame& frame, const std::string& name) const;
+
     std::array<Colour, 3> colours_;
     const float* opacity_;
-    std::array<Shares, 3> shares_;
+    int width_, cell_, across_ = 0, down_ = 0;
 };
 
 } // namespace clvr

@@ -91,6 +91,7 @@ void initialise(Model& m, std::uint64_t seed) {
 }
 
 void add_known_light(Model& m) {
+    m.control_variate_cell = 32;
     if (m.control_variate) return;
     m.control_variate = true;
     const std::size_t taps = static_cast<std::size_t>(m.kernel) * m.kernel, before = m.channels.size();
@@ -126,6 +127,7 @@ void validate(const Model& m) {
     check_range("the kernel size", m.kernel, 1, 15);
     if (m.kernel % 2 == 0) fail(fmt::format("model: the kernel size is {}; expected an odd number", m.kernel));
     validate_levels(m.levels);
+    if (m.control_variate_cell != 0) check_range("the control variate's pixels per cell", m.control_variate_cell, 8, 256);
     if (!(m.albedo_floor > 0 && m.albedo_floor <= 1))
         fail(fmt::format("model: the albedo floor is {}; expected above 0, up to 1", m.albedo_floor));
     const std::size_t taps = static_cast<std::size_t>(m.kernel) * m.kernel, hidden = static_cast<std::size_t>(m.hidden),

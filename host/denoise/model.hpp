@@ -27,6 +27,7 @@ struct Model {
     float albedo_floor = 0x1p-20f;            ///< radiance is divided and remultiplied by max(albedo, this)
     bool demodulation = true;                 ///< where the channels have the three of albedo; false: radiance is taken as it is
     bool control_variate = false;             ///< what is known of the light (known_light.hpp) is taken off before the grids, added after
+    int control_variate_cell = 0;             ///< KnownLight's `cell`: 0, or 8 to 256 pixels
     bool opacity_weight = false;              ///< a pixel counts in the splat by its opacity.A, and the output is times that
     std::map<std::string, std::string> notes; ///< further metadata ("clvr.training", ...): how it was made; kept when the file is copied
 
@@ -52,8 +53,8 @@ Model default_settings();
 /// Sizes the tensors and draws them as the reference does: Glorot uniform kernels, zero biases. The same bits for a seed on every machine.
 void initialise(Model& model, std::uint64_t seed);
 
-/// Makes the model take known light off before its grids and read it as three more channels, whose weights are 0: before it is trained on,
-/// its guides are what they were. A model that does so already stays as it is.
+/// Makes the model take known light off before its grids, by shares that vary over cells of 32 pixels, and read it as three more channels,
+/// whose weights are 0: before it is trained on, its guides are what they were. A model that does so already only gets the cells.
 void add_known_light(Model& model);
 
 /// Throws Error{input} naming the first thing that is wrong: no channels, unknown or doubled ones, sizes out of range (channels 1..64,

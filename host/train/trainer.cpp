@@ -69,6 +69,7 @@ std::string configuration_of(const Model& model, const TrainerConfig& c, const s
     if (c.steps > 0) all["steps"] = c.steps;
     if (!model.demodulation) all["demodulation"] = false;
     if (model.control_variate) all["control_variate"] = true;
+    if (model.control_variate_cell) all["control_variate_cell"] = model.control_variate_cell;
     return all.dump();
 }
 

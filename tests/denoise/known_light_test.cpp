@@ -44,6 +44,36 @@ TEST(KnownLight, FindsTheSharesThatAFrameIsMadeOf) {
     EXPECT_EQ(known(1, 0), 0); // nothing is there
 }
 
+/// The left half lit by other shares than the right one: cells far from the border find their own, one share for all lies between.
+TEST(KnownLight, SharesVaryOverCells) {
+    Frame f = noisy_frame(256, 128);
+    std::uint32_t k = 9;
+    for (std::size_t i = 0; i < f.pixels(); ++i) {
+        f.channel("opacity.A")[i] = 1;
+        for (const std::string c : {"R", "G", "B"}) {
+            k = k * 1664525u + 1013904223u;
+            f.channel("albedo." + c)[i] = 0.5f;
+            float &key = f.channel("light.key." + c)[i], &sky = f.channel("light.sky." + c)[i];
+            key = 0.2f + 0.1f * static_cast<float>((k >> 9) % 7), sky = 0.3f + 0.1f * static_cast<float>((k >> 13) % 5);
+            f.channel(c)[i] = (i % 256 < 128 ? 1.5f : 0.9f) * key + sky + 0.02f * static_cast<float>((k >> 17) % 11 - 5.0);
+        }
+    }
+    const KnownLight one(f), many(f, 32);
+    EXPECT_EQ(one.shares_at(1, 5).key, one.shares(1).key);
+    EXPECT_EQ(many.shares(1).key, one.shares(1).key);
+    EXPECT_GT(one.shares(1).key, 1.0);
+    EXPECT_LT(one.shares(1).key, 1.4);
+    const std::size_t row = 64 * 256;
+    EXPECT_NEAR(many.shares_at(1, row + 20).key, 1.5, 0.1);
+    EXPECT_NEAR(many.shares_at(1, row + 230).key, 0.9, 0.1);
+    EXPECT_NEAR(many.shares_at(1, row + 128).key, 1.2, 0.2);
+    for (std::size_t x = 100; x < 160; ++x) EXPECT_LE(many.shares_at(1, row + x).key, many.shares_at(1, row + x - 1).key + 1e-12) << x;
+    // A picture that is no multiple of the cell, smaller than one.
+    const Frame small = noisy_frame(21, 13);
+    const KnownLight of_small(small, 32);
+    for (std::size_t i = 0; i < small.pixels(); ++i) ASSERT_TRUE(std::isfinite(of_small(2, i)));
+}
+
 TEST(KnownLight, OfNothingTakesTheLightAsItIs) {
     Frame f = noisy_frame(20, 20);
     for (float& v : f.channel("opacity.A")) v = 0;
@@ -58,9 +88,11 @@ TEST(KnownLight, IsFiniteWhateverTheFrameHolds) {
     const char* const names[] = {"R", "light.key.R", "light.sky.R", "albedo.R", "opacity.A"};
     for (std::size_t n = 0; n < 5; ++n)
         for (std::size_t k = 0; k < 4; ++k) f.channel(names[n])[24 * 64 + 20 + 4 * n + k] = bad[k];
-    const KnownLight known(f);
-    for (const double share : {known.shares(0).key, known.shares(0).sky, known.shares(0).ambient}) EXPECT_TRUE(std::isfinite(share));
-    for (std::size_t i = 0; i < f.pixels(); ++i) ASSERT_TRUE(std::isfinite(known(0, i))) << i;
+    for (int cell : {0, 8, 32}) {
+        const KnownLight known(f, cell);
+        for (const double share : {known.shares(0).key, known.shares(0).sky, known.shares(0).ambient}) EXPECT_TRUE(std::isfinite(share));
+        for (std::size_t i = 0; i < f.pixels(); ++i) ASSERT_TRUE(std::isfinite(known(0, i))) << i;
+    }
 }
 
 TEST(AddKnownLight, LeavesTheWeightsOfTheOtherChannels) {

@@ -85,6 +85,19 @@ TEST_F(ModelFile, DemodulationIsOnUnlessItSaysOtherwise) {
     EXPECT_FALSE(read_model(path()).demodulation);
 }
 
+TEST_F(ModelFile, KnownLightHasOneShareUnlessItSaysHowLargeItsCellsAre) {
+    Model m = small_model();
+    m.control_variate = true;
+    m.channels.insert(m.channels.end(), {"known.R", "known.G", "known.B"});
+    m.conv1_weight.resize(m.conv1_weight.size() / (m.channels.size() - 3) * m.channels.size());
+    write_model(m, path());
+    EXPECT_EQ(read_text(path()).find("control_variate_cell"), std::string::npos);
+    EXPECT_EQ(read_model(path()).control_variate_cell, 0);
+    m.control_variate_cell = 32;
+    write_model(m, path());
+    EXPECT_EQ(read_model(path()).control_variate_cell, 32);
+}
+
 /// What Hugging Face's safetensors library reads into PyTorch: 8 bytes of header length, JSON, raw little-endian values in header order.
 TEST_F(ModelFile, IsLaidOutAsTheFormatSays) {
     const Model m = small_model();
@@ -181,6 +194,8 @@ TEST_F(ModelFile, RefusesModelsThatCannotBe) {
     expect([](Model& m) { m.levels.push_back({8, 8}); }, "conv2.weight");
     expect([](Model& m) { m.levels[0].codes = 2; }, "levels");
     expect([](Model& m) { m.albedo_floor = 0; }, "albedo floor");
+    expect([](Model& m) { m.control_variate_cell = 7; }, "pixels per cell");
+    expect([](Model& m) { m.control_variate_cell = -1; }, "pixels per cell");
 }
 
 } // namespace

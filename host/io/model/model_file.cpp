@@ -61,6 +61,7 @@ void read_settings(const std::string& text, const std::string& where, Model& m) 
     fields.get("opacity_weight", m.opacity_weight);
     fields.get("demodulation", m.demodulation);
     fields.get("control_variate", m.control_variate);
+    fields.get("control_variate_cell", m.control_variate_cell);
     fields.done();
 }
 
@@ -117,6 +118,7 @@ std::string model_settings_json(const Model& m) {
     // Absent, as in files of before the switches: on and off.
     if (!m.demodulation) settings["demodulation"] = false;
     if (m.control_variate) settings["control_variate"] = true;
+    if (m.control_variate_cell) settings["control_variate_cell"] = m.control_variate_cell;
     return settings.dump();
 }
 
