@@ -1,4 +1,4 @@
-// Direct light for the features on one device: the arguments DIRECT_LIGHT_ARGS of the marcher.
+// Direct light for the features on one device: what the marcher needs for it.
 #pragma once
 #include "host/render/device_volume.hpp"
 #include "host/render/sky_split.hpp"

@@ -18,32 +18,46 @@ Marcher::Marcher(Device& device, const DeviceVolume& volume, const LightTables& 
 
 Marcher::Marcher(Device& device, const DeviceVolume& volume, const LightTables& light, const KeyLights* keys, const SkyLight* sky,
                  March march, int rays)
-    : device_(device), volume_(volume), light_(light), keys_(keys), sky_(sky), march_(march), width_(packet_width(device)),
-      at_once_(pixels_per_launch(device)) {
+    : device_(device), volume_(volume), light_(light), keys_(keys), sky_(sky), count_(march_planes(march, keys != nullptr)),
+      width_(packet_width(device)), at_once_(pixels_per_launch(device)) {
     Defines defines = volume.defines();
     defines["CLVR_WIDTH"] = std::to_string(width_);
     defines["CLVR_RAYS"] = std::to_string(rays);
-    defines["CLVR_MARCH"] = std::to_string(static_cast<int>(march));
     if (keys) defines["CLVR_KEYS"] = std::to_string(keys->count());
-    kernel_ = device_.kernel("render/march", defines);
-    planes_ = device_.buffer(std::size_t{4} * march_planes(march) * at_once_, "feature planes");
+    if (keys) direct_light_ = device_.kernel("render/direct_light", defines);
+    defines["CLVR_MARCH"] = std::to_string(static_cast<int>(march));
+    defines["CLVR_LIT"] = keys ? "1" : "0";
+    march_ = device_.kernel("render/march", defines);
+
+    const std::size_t sums = keys ? sizeof(float) * rays * CLVR_LIGHT_SUMS(keys->count()) : 0; // a pixel
+    constexpr std::uint32_t least = 1024;
+    while (at_once_ > least && at_once_ * sums > std::min(device.free_bytes() / 2, device.max_alloc_bytes())) at_once_ /= 2;
+    stride_ = (at_once_ + 15) / 16 * 16; // whole packets
+    planes_ = device_.buffer(sizeof(float) * count_ * stride_, "feature planes");
+    if (keys) sums_ = device_.buffer(sums * stride_, "light sums");
 }
 
 void Marcher::run(std::uint32_t first_pixel, std::uint32_t pixels, std::vector<float>& planes, std::size_t stride, std::size_t offset) {
-    const Range group = kernel_.group(packet_group(device_, width_));
     for (std::uint32_t done = 0; done < pixels; done += at_once_) {
         const std::uint32_t n = std::min(at_once_, pixels - done);
-        const Range packets{(n + width_ - 1) / width_};
-        const std::uint32_t first = first_pixel + done;
-        if (keys_)
-            device_.launch(kernel_, packets, group, {}, volume_.arguments(), volume_.coarse_opacity(), light_.render(), keys_->lobe(),
-                           keys_->keys(), sky_->grid(), sky_->light(), first, n, at_once_, planes_);
-        else
-            device_.launch(kernel_, packets, group, {}, volume_.arguments(), volume_.coarse_opacity(), light_.render(), first, n, at_once_,
-                           planes_);
-        for (int p = 0; p < march_planes(march_); ++p)
-            device_.read(planes_, &planes[p * stride + offset + done], n * 4, std::size_t{4} * p * at_once_);
+        launch(first_pixel + done, n);
+        for (int p = 0; p < count_; ++p) device_.read(planes_, &planes[p * stride + offset + done], n * 4, std::size_t{4} * p * stride_);
     }
+}
+
+/// Into planes_.
+void Marcher::launch(std::uint32_t first, std::uint32_t pixels) {
+    const std::size_t group = packet_group(device_, width_);
+    const Range packets{(pixels + width_ - 1) / width_};
+    if (!keys_) {
+        device_.launch(march_, packets, march_.group(group), {}, volume_.arguments(), volume_.coarse_opacity(), light_.render(), first,
+                       pixels, stride_, planes_);
+        return;
+    }
+    device_.launch(march_, packets, march_.group(group), {}, volume_.arguments(), volume_.coarse_opacity(), light_.render(), keys_->lobe(),
+                   keys_->keys(), sums_, first, pixels, stride_, planes_);
+    device_.launch(direct_light_, packets, direct_light_.group(group), {}, volume_.arguments(), volume_.coarse_opacity(), light_.render(),
+                   keys_->keys(), sky_->grid(), sky_->light(), sums_, first, pixels, stride_, planes_);
 }
 
 } // namespace clvr

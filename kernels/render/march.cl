@@ -2,22 +2,22 @@
 //
 // Samples lie on the ray's own lattice t0 + (k + 1/2) step; cells without extinction are skipped in k, so skipping never moves the lattice.
 // Weights w = T (1 - exp(-sigma step)); a ray ends at T < 1e-4. Sums run over CLVR_RAYS fixed positions in the pixel and are divided once.
-#include "lib/camera.clh"
-#include "lib/paths.clh"
+#include "lib/feature_pixels.clh"
 #include "lib/seek.clh"
 
-#ifndef CLVR_RAYS
-#define CLVR_RAYS 4
-#endif
 // 0 features, 1 dvr, 2 mip
 #ifndef CLVR_MARCH
 #define CLVR_MARCH 0
 #endif
-#if CLVR_MARCH == 0
-#include "lib/direct_light.clh"
-#define FEATURE_ARGS DIRECT_LIGHT_ARGS,
+// 1: features with the sums of direct light
+#ifndef CLVR_LIT
+#define CLVR_LIT 0
+#endif
+#if CLVR_LIT
+#include "lib/light_sums.clh"
+#define SUM_ARGS __global const float *lobe, __constant KeyLight *keys, __global float *sums,
 #else
-#define FEATURE_ARGS
+#define SUM_ARGS
 #endif
 
 #define LEAST_OPACITY 0.00390625f // features of pixels below 1/256 are constants
@@ -28,9 +28,10 @@ typedef struct {
     vfloat weight, depth, depth2, half_depth, peak; // sums of w, w d, w d^2, depth of T = 1/2; greatest stored value
     Vec3 color, normal;                             // sums of w c, w n
     vmask met;                                      // lanes with a visible sample
-#if CLVR_MARCH == 0
-    DirectLight light;
-    Vec3 key, sky; // sums over rays of their light
+#if CLVR_LIT
+    __global const float* lobe;
+    __constant KeyLight* keys;
+    LightSums lit; // of the ray
 #endif
 } MarchSums;
 
@@ -46,7 +47,6 @@ static inline Vec3 facing_normal(const Volume* vol, Vec3 p, Vec3 dir, vfloat* st
     return scaled(g, v_select(v_gt(inner3(g, dir), (vfloat)(0.0f)), -s, s));
 }
 
-
 // `number`: of the ray among the pixel's.
 static inline void march_ray(const Volume* vol, __global const float* coarse, __constant RenderParams* render, int number, Vec3 pos_index, Vec3 dir_world,
                              vmask lanes, MarchSums* sums) {
@@ -59,8 +59,8 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
 #endif
     vmask active = begin_march(vol, &ray, lanes, &t0, &t1);
     vint k = (vint)(0);
-#if CLVR_MARCH == 0
-    LitSums lit = no_light();
+#if CLVR_LIT
+    sums->lit = no_light();
 #endif
     for (;;) {
         Int3 i;
@@ -83,8 +83,9 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
             vfloat lit = fma(surface_chance(vol->p, steepness), fma((vfloat)(-0.8f), 1.0f + inner3(normal, dir_world), (vfloat)(0.0f)), (vfloat)(1.0f));
             color = scaled(color, lit);
 #endif
-#if CLVR_MARCH == 0
-            add_lit_sample(&lit, &sums->light, number, seen, w, t, dir_world, color, normal, surface_chance(vol->p, steepness), render->phase_g);
+#if CLVR_LIT
+            add_light_sample(&sums->lit, sums->lobe, sums->keys, number, seen, w, t, dir_world, color, normal, surface_chance(vol->p, steepness),
+                             render->phase_g);
 #endif
             sums->weight = fma(transmitted, absorbed, sums->weight);
             sums->color = add_where(seen, sums->color, color, w);
@@ -98,37 +99,30 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
 #endif
     }
     sums->half_depth += half_depth;
-#if CLVR_MARCH == 0
-    add_direct_light(&lit, &sums->light, vol, coarse, &ray, dir_world, number, render, &sums->key, &sums->sky);
-#endif
 }
 
-// Writes planes of `stride` values at pixel - first_pixel. Features: albedo RGB, normal XYZ, depth, opacity, depth deviation,
-// half depth, radiance by keys RGB, by the sky RGB. dvr, mip: R G B A.
-__kernel void march(VOLUME_ARGS, __global const float* coarse, __constant RenderParams* render, FEATURE_ARGS uint first_pixel, uint pixels, uint stride,
+// Writes planes of `stride` values, a multiple of 16, at pixel - first_pixel. Features: albedo RGB, normal XYZ, depth, opacity, depth deviation,
+// half depth, and the rays' LightSums into `sums`. dvr, mip: R G B A.
+__kernel void march(VOLUME_ARGS, __global const float* coarse, __constant RenderParams* render, SUM_ARGS uint first_pixel, uint pixels, uint stride,
                     __global float* planes) {
     VOLUME_HERE(vol);
     uint first = (uint)get_global_id(0) * CLVR_WIDTH;
     if (first >= pixels) return;
-    float fx[CLVR_WIDTH], fy[CLVR_WIDTH];
-    for (int lane = 0; lane < CLVR_WIDTH; ++lane) {
-        uint2 pixel = pixel_of(first_pixel + first + (uint)lane, render->width);
-        fx[lane] = (float)pixel.x, fy[lane] = (float)pixel.y;
-    }
-    vfloat x = v_load(fx), y = v_load(fy), zero = (vfloat)(0.0f);
+    vfloat x, y, zero = (vfloat)(0.0f);
+    pixel_corners(render, first_pixel + first, &x, &y);
     vmask lanes = v_lt(v_iota + (int)first, (vint)((int)pixels));
     MarchSums s = {zero, zero, zero, zero, zero, {zero, zero, zero}, {zero, zero, zero}, (vmask)(0)
-#if CLVR_MARCH == 0
-                   , DIRECT_LIGHT_HERE, {zero, zero, zero}, {zero, zero, zero}
+#if CLVR_LIT
+                   , lobe, keys, no_light()
 #endif
     };
     for (int ray = 0; ray < CLVR_RAYS; ++ray) {
-        // A rotated grid: each position has its own row and column in the pixel.
-        int column = (ray * 2 + (ray >> 1)) & 3;
-        float px = CLVR_RAYS == 1 ? 0.5f : fma((float)column, 0.25f, 0.125f), py = CLVR_RAYS == 1 ? 0.5f : fma((float)ray, 0.25f, 0.125f);
         Vec3 o, d;
-        camera_ray(render, x + px, y + py, &o, &d);
+        feature_ray(render, x, y, ray, &o, &d);
         march_ray(&vol, coarse, render, ray, o, d, lanes, &s);
+#if CLVR_LIT
+        store_sums(sums + (uint)ray * CLVR_LIGHT_SUMS(CLVR_KEYS) * stride + first, stride, &s.lit);
+#endif
     }
 #if CLVR_MARCH != 2
     float share = 1.0f / (float)CLVR_RAYS;
@@ -137,23 +131,17 @@ __kernel void march(VOLUME_ARGS, __global const float* coarse, __constant Render
     vmask seen = v_ge(s.weight * share, (vfloat)(LEAST_OPACITY));
     vfloat divisor = v_select(seen, s.weight, (vfloat)(1.0f)), one = (vfloat)(1.0f);
     vfloat depth = s.depth / divisor, variance = fma(-depth, depth, s.depth2 / divisor);
-    vfloat out[16] = {v_select(seen, s.color.x / divisor, one),
-                      v_select(seen, s.color.y / divisor, one),
-                      v_select(seen, s.color.z / divisor, one),
-                      v_select(seen, s.normal.x / divisor, zero),
-                      v_select(seen, s.normal.y / divisor, zero),
-                      v_select(seen, s.normal.z / divisor, zero),
-                      v_select(seen, depth, one),
-                      s.weight * share,
-                      v_select(seen, sqrt(v_max(variance, zero)), zero),
-                      v_select(seen, s.half_depth * share, one),
-                      s.key.x * share,
-                      s.key.y * share,
-                      s.key.z * share,
-                      s.sky.x * share,
-                      s.sky.y * share,
-                      s.sky.z * share};
-    int count = 16;
+    vfloat out[CLVR_FEATURE_PLANES] = {v_select(seen, s.color.x / divisor, one),
+                                       v_select(seen, s.color.y / divisor, one),
+                                       v_select(seen, s.color.z / divisor, one),
+                                       v_select(seen, s.normal.x / divisor, zero),
+                                       v_select(seen, s.normal.y / divisor, zero),
+                                       v_select(seen, s.normal.z / divisor, zero),
+                                       v_select(seen, depth, one),
+                                       s.weight * share,
+                                       v_select(seen, sqrt(v_max(variance, zero)), zero),
+                                       v_select(seen, s.half_depth * share, one)};
+    int count = CLVR_FEATURE_PLANES;
 #elif CLVR_MARCH == 1
     vfloat out[4] = {s.color.x * share, s.color.y * share, s.color.z * share, s.weight * share};
     int count = 4;
@@ -164,10 +152,5 @@ __kernel void march(VOLUME_ARGS, __global const float* coarse, __constant Render
     vfloat out[4] = {grey, grey, grey, v_select(s.met, (vfloat)(1.0f), zero)};
     int count = 4;
 #endif
-    for (int c = 0; c < count; ++c) {
-        float value[CLVR_WIDTH];
-        v_store(out[c], value);
-        for (int lane = 0; lane < CLVR_WIDTH; ++lane)
-            if (first + (uint)lane < pixels) planes[(uint)c * stride + first + (uint)lane] = value[lane];
-    }
+    for (int c = 0; c < count; ++c) store_pixels(planes + (uint)c * stride + first, pixels - first, out[c]);
 }

@@ -4,6 +4,8 @@
 #include "shared/types.h"
 CLVR_SHARED_BEGIN
 
+#define CLVR_FEATURE_PLANES 10 ///< of the march: albedo RGB, normal XYZ, depth, opacity, depth deviation, half depth
+
 /// Directions are world space; positions of rays are index space. Colours are linear RGB radiance.
 typedef struct RenderParams {
     float4 eye;             ///< index position of the eye (of the image plane's centre when orthographic); w: 1 when orthographic

@@ -166,7 +166,7 @@ TEST(DirectLight, DependsOnNeitherPacketsNorGroups) {
     for (const std::map<std::string, int>& tunables : {std::map<std::string, int>{{"packet", 1}, {"packet_group", 32}},
                                                        {{"packet", 4}},
                                                        {{"packet", 8}, {"packet_group", 2}},
-                                                       {{"march_pixels", 160}}}) {
+                                                       {{"march_pixels", 100}}}) {
         Device device = open_device();
         for (const auto& [name, value] : tunables) device.set_tunable(name, value);
         EXPECT_EQ(march(device, stage).planes, planes) << tunables.begin()->first << ' ' << tunables.begin()->second;

@@ -2,7 +2,7 @@
 set -euo pipefail
 
 # What the host may define for a build, beside the packet width: together these reach every `#if` of the kernels.
-variants=('-DCLVR_MARCH=0 -DCLVR_KNOWN=1'
+variants=('-DCLVR_MARCH=0 -DCLVR_LIT=1 -DCLVR_KNOWN=1'
     '-DCLVR_VOXEL=short -DCLVR_VOXEL_BITS=16 -DCLVR_VOXEL_SIGNED=1 -DCLVR_POOLS=2 -DCLVR_MARCH=1'
     '-DCLVR_VOXEL=float -DCLVR_VOXEL_BITS=32 -DCLVR_VOXEL_SIGNED=0 -DCLVR_POOLS=8 -DCLVR_MARCH=2 -DCLVR_RAYS=1')
 

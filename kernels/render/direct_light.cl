@@ -1,86 +1,16 @@
-// Direct light along a feature ray, without noise: CLVR_KEYS lights of one direction each by a march towards them, the rest from the grid of sky light.
-// What a sample would scatter of each light is summed with the sample's weight; how much of the light arrives is looked up at one point of the ray, the
-// quantile of its opacity that differs from ray to ray of a pixel. (Picked among samples as they come, it would be another one for every small change.)
-#pragma once
+// Direct light of the features, without noise: CLVR_KEYS lights of one direction each by a march towards them, the rest from the grid of sky light. How much
+// of a light arrives is looked up at one point of each ray that march summed, the quantile of its opacity that differs from ray to ray of a pixel. (Picked
+// among samples as they come, it would be another one for every small change.) One work-item a packet of pixels.
+#include "lib/feature_pixels.clh"
 #include "lib/harmonics.clh"
-#include "lib/lobes.clh"
+#include "lib/light_sums.clh"
 #include "lib/seek.clh"
-#include "shared/render_params.h"
-
-#ifndef CLVR_KEYS
-#define CLVR_KEYS 2
-#endif
-#ifndef CLVR_RAYS
-#define CLVR_RAYS 4
-#endif
-
-#define DIRECT_LIGHT_ARGS __global const float *lobe, __constant KeyLight *keys, SkyGrid sky_grid, __global const float4 *sky_light
-#define DIRECT_LIGHT_HERE {lobe, keys, &sky_grid, sky_light}
-
-#define KEY_SLOTS (CLVR_KEYS > 0 ? CLVR_KEYS : 1)
 
 typedef struct {
-    __global const float* lobe;
-    __constant KeyLight* keys;        // [CLVR_KEYS]
+    __constant KeyLight* keys; // [CLVR_KEYS]
     const SkyGrid* grid;
     __global const float4* sky_light; // [corners * 9] (volume/sky_light.cl)
 } DirectLight;
-
-// Sums along a ray. Loops over keys stay loops: unrolled five times, rusticl (Mesa 22.3) needed minutes to compile them.
-typedef struct {
-    vfloat weight;
-    Vec3 keyed[KEY_SLOTS];   // what is reflected per irradiance of each key
-    Vec3 reflected, scattered; // of uniform light 1: by surfaces, by the phase function
-    Vec3 normal;             // sum of w n
-    vfloat first, moment, moment2; // place of the first sample [mm], sums of w times the distance from it and its square
-} LitSums;
-
-// Towards key k as ray `ray` of four in a pixel sees it: on the circle that halves the disc.
-static inline Vec3 key_direction(const DirectLight* light, int k, int ray) {
-    KeyLight key = light->keys[k];
-    float sine = key.direction.w;
-    if (CLVR_RAYS == 1 || sine <= 0.0f) return vec3_of(key.direction);
-    float x = (ray & 1 ? -sine : sine) * 0.70710678f, y = (ray & 2 ? -sine : sine) * 0.70710678f;
-    return in_frame(vec3_of(key.right), vec3_of(key.up), vec3_of(key.direction), (vfloat)(x), (vfloat)(y), (vfloat)(sqrt(fma(-sine, sine, 1.0f))));
-}
-
-static inline LitSums no_light(void) {
-    LitSums s;
-    Vec3 none = vec3((vfloat)(0.0f), (vfloat)(0.0f), (vfloat)(0.0f));
-    s.weight = s.first = s.moment = s.moment2 = (vfloat)(0.0f);
-    s.reflected = s.scattered = s.normal = none;
-    for (int k = 0; k < CLVR_KEYS; ++k) s.keyed[k] = none;
-    return s;
-}
-
-// A sample of the lanes of `seen`: its weight, place on the ray [mm], normal against `dir`, chance to act as a surface.
-static inline void add_lit_sample(LitSums* s, const DirectLight* light, int ray, vmask seen, vfloat weight, vfloat t, Vec3 dir, Vec3 albedo,
-                                  Vec3 normal, vfloat chance, float phase_g) {
-    vfloat w = v_select(seen, weight, (vfloat)(0.0f));
-    s->first = v_select(v_gt(s->weight, (vfloat)(0.0f)), s->first, t);
-    s->moment = fma(w, t - s->first, s->moment);
-    s->moment2 = fma(w * (t - s->first), t - s->first, s->moment2);
-    s->weight += w;
-
-    vfloat on_surface = w * chance, in_medium = fma(-w, chance, w);
-    vfloat cos_out = v_max(-inner3(normal, dir), (vfloat)(1e-4f)), albedo_out = lobe_albedo(light->lobe, cos_out);
-    vfloat matte_share = on_surface * (1.0f - albedo_out), glossy_share = on_surface * albedo_out;
-    s->reflected = vec3(s->reflected.x + fma(albedo.x, matte_share, glossy_share), s->reflected.y + fma(albedo.y, matte_share, glossy_share),
-                        s->reflected.z + fma(albedo.z, matte_share, glossy_share));
-    s->scattered = along(s->scattered, albedo, in_medium);
-    s->normal = along(s->normal, normal, w);
-#pragma nounroll
-    for (int k = 0; k < CLVR_KEYS; ++k) {
-        Vec3 in = key_direction(light, k, ray);
-        vfloat cos_in = inner3(normal, in);
-        vmask lit = v_gt(cos_in, (vfloat)(0.0f));
-        Lobes l = lobes_of(light->lobe, normal, negated(dir), cos_out, albedo_out, in, v_select(lit, cos_in, (vfloat)(1.0f)));
-        vfloat of_surface = v_select(lit, on_surface, (vfloat)(0.0f));
-        vfloat coloured = fma(of_surface, l.matte, in_medium * phase_density(phase_g, inner3(dir, in))), white = of_surface * l.glossy;
-        s->keyed[k] = vec3(s->keyed[k].x + fma(albedo.x, coloured, white), s->keyed[k].y + fma(albedo.y, coloured, white),
-                           s->keyed[k].z + fma(albedo.z, coloured, white));
-    }
-}
 
 // Transmittance from index position p towards the unit world direction, by midpoints `step` apart.
 static inline vfloat arriving(const Volume* vol, __global const float* coarse, Vec3 p, Vec3 dir, float step, vmask lanes) {
@@ -137,7 +67,7 @@ static inline void sky_around(const DirectLight* light, float3 p, float3 normal,
 // How far a ray is stopped by a thin layer: its opacity where the weight's deviation is below a voxel, 0 from four on, between them a cubic; less where the
 // normals point anywhere (`coherence`: length of their mean). Into *t: the quantile (r + 1/2) / 4 for ray r of four, by the weight's mean and
 // deviation; *before: from there to where the layer begins [mm].
-static inline vfloat layer_share(const LitSums* s, int ray, vfloat coherence, float voxel, vfloat* t, vfloat* before) {
+static inline vfloat layer_share(const LightSums* s, int ray, vfloat coherence, float voxel, vfloat* t, vfloat* before) {
     // sqrt(12) (quantile - 1/2) deviations from the mean where the weight is even, -1 - ln(1 - quantile) where it falls to nothing.
     const float even[4] = {-1.29903811f, -0.433012702f, 0.433012702f, 1.29903811f}, falling[4] = {-0.866468592f, -0.529996371f, -0.0191707468f, 1.07944154f};
     vfloat weight = v_select(v_gt(s->weight, (vfloat)(0.0f)), s->weight, (vfloat)(1.0f)), mean = s->moment / weight;
@@ -166,7 +96,7 @@ static inline LayerIntegrals layer_integrals(vfloat slope) {
 }
 
 // Adds a ray's light to *by_key, *by_sky: linear RGB radiance. `number`: of the ray in its pixel.
-static inline void add_direct_light(const LitSums* s, const DirectLight* light, const Volume* vol, __global const float* coarse, const Ray* ray, Vec3 dir,
+static inline void add_direct_light(const LightSums* s, const DirectLight* light, const Volume* vol, __global const float* coarse, const Ray* ray, Vec3 dir,
                                     int number, __constant RenderParams* render, Vec3* by_key, Vec3* by_sky) {
     vmask seen = v_gt(s->weight, (vfloat)(0.0f));
     if (!v_any(seen)) return;
@@ -177,7 +107,7 @@ static inline void add_direct_light(const LitSums* s, const DirectLight* light, 
 #pragma nounroll
     for (int k = 0; k < CLVR_KEYS; ++k) {
         // Light from before a layer: marched from there, the layer crossed by the law of LayerIntegrals. From behind it: marched from within.
-        Vec3 in = key_direction(light, k, number);
+        Vec3 in = key_direction(light->keys + k, number);
         vfloat cosine = inner3(normal, in), share = v_select(v_gt(cosine, (vfloat)(0.0f)), layer, (vfloat)(0.0f));
         Vec3 start = along(along(ray->o, ray->d, fma(share, before, t)), outward, share * 1.5f);
         vfloat arrives = arriving(vol, coarse, start, in, 2.0f * render->step, seen), most = v_max(cosine, (vfloat)(1e-3f));
@@ -221,4 +151,27 @@ static inline void add_direct_light(const LitSums* s, const DirectLight* light, 
     }
     *by_sky = along(*by_sky, product(s->reflected, vec3(v_load(on[0]), v_load(on[1]), v_load(on[2]))), (vfloat)(1.0f));
     *by_sky = along(*by_sky, product(s->scattered, vec3(v_load(in[0]), v_load(in[1]), v_load(in[2]))), (vfloat)(1.0f));
+}
+
+// Writes six planes behind those of march over the same pixels, which left its rays' sums in `sums`: radiance by keys RGB, by the sky RGB.
+__kernel void direct_light(VOLUME_ARGS, __global const float* coarse, __constant RenderParams* render, __constant KeyLight* keys, SkyGrid sky_grid,
+                           __global const float4* sky_light, __global const float* sums, uint first_pixel, uint pixels, uint stride,
+                           __global float* planes) {
+    VOLUME_HERE(vol);
+    uint first = (uint)get_global_id(0) * CLVR_WIDTH;
+    if (first >= pixels) return;
+    DirectLight light = {keys, &sky_grid, sky_light};
+    vfloat x, y, zero = (vfloat)(0.0f);
+    pixel_corners(render, first_pixel + first, &x, &y);
+    Vec3 by_key = vec3(zero, zero, zero), by_sky = by_key;
+    for (int number = 0; number < CLVR_RAYS; ++number) {
+        LightSums s = load_sums(sums + (uint)number * CLVR_LIGHT_SUMS(CLVR_KEYS) * stride + first, stride);
+        Vec3 o, d;
+        feature_ray(render, x, y, number, &o, &d);
+        Ray ray = make_ray(vol.p, o, d);
+        add_direct_light(&s, &light, &vol, coarse, &ray, d, number, render, &by_key, &by_sky);
+    }
+    float share = 1.0f / (float)CLVR_RAYS;
+    vfloat out[6] = {by_key.x * share, by_key.y * share, by_key.z * share, by_sky.x * share, by_sky.y * share, by_sky.z * share};
+    for (int c = 0; c < 6; ++c) store_pixels(planes + (uint)(CLVR_FEATURE_PLANES + c) * stride + first, pixels - first, out[c]);
 }
