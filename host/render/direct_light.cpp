@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace clvr {
 
@@ -25,7 +26,7 @@ std::vector<shared::KeyLight> key_lights(const shared::RenderParams& p, const Sk
         head.irradiance = p.head_irradiance;
         keys.push_back(head);
     }
-    keys.insert(keys.end(), sky.suns.begin(), sky.suns.end());
+    std::copy(sky.suns.begin(), sky.suns.end(), std::back_inserter(keys)); // g++ 14 warns of a range insert after push_back
     return keys;
 }
 

@@ -21,4 +21,4 @@ check() { # FILE DEFINE...
     }
 }
 
-for_each_kernel "$1" './probe/*'
+for_each_kernel "$1" './probe/*' distinct

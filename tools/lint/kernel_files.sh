@@ -13,9 +13,20 @@ kernel_clang() { # FILE OPTION...: clang on a kernel file as OpenCL C 1.2, from 
     "$kernel_compiler" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -I . "${@:2}" "$1"
 }
 
-# for_each_kernel ROOT [SKIPPED]: calls the shell function `check FILE DEFINE...` for every .cl file of ROOT/kernels but those whose path matches
-# the pattern SKIPPED, in every variant, those that speak of CLVR_WIDTH also 16 lanes wide; two at a time. Fails when a check does (it says why
-# itself) or when there is no file.
+# Lines "FILE DEFINE..." in; those out whose preprocessed text was not there before: most kernels look at few of the defines.
+distinct() {
+    local line text
+    local -A seen=()
+    while read -r line; do
+        text=$("$kernel_compiler" -x cl -cl-std=CL1.2 -I . -E -P ${line#* } "${line%% *}" 2>/dev/null) || text=$line # the check says what is wrong
+        [ -n "${seen[=$text]:-}" ] || echo "$line"
+        seen[=$text]=1
+    done
+}
+
+# for_each_kernel ROOT [SKIPPED [FILTER]]: calls the shell function `check FILE DEFINE...` for every .cl file of ROOT/kernels but those whose path
+# matches the pattern SKIPPED, in every variant (that the shell function FILTER lets through), those that speak of CLVR_WIDTH also 16 lanes wide; two
+# at a time. Fails when a check does (it says why itself) or when there is no file.
 for_each_kernel() {
     cd "$1/kernels"
     local files file width variant
@@ -26,5 +37,5 @@ for_each_kernel() {
         for width in 1 $(grep -q CLVR_WIDTH "$file" && echo 16); do
             for variant in "${variants[@]}"; do echo "${file#./} -DCLVR_WIDTH=$width $variant"; done
         done
-    done | xargs -P2 -L1 bash -c 'set -euo pipefail; check "$@"' _
+    done | "${3:-cat}" | xargs -P2 -L1 bash -c 'set -euo pipefail; check "$@"' _
 }
