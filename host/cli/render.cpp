@@ -5,6 +5,7 @@
 #include "host/cli/picture_outputs.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
+#include "host/denoise/channels.hpp"
 #include "host/denoise/denoiser.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/file_roles.hpp"
@@ -21,6 +22,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <optional>
@@ -57,6 +59,7 @@ void add_provenance(Frame& frame, const Scene& scene, const std::vector<Device>&
 class FrameDenoiser {
 public:
     explicit FrameDenoiser(Model model) : model_(std::move(model)) {}
+    bool wants_light() const { return reads_light(model_); }
     Frame denoise(const Frame& frame, std::vector<Device> devices) {
         return on_first(devices, [&](Device& device) {
             if (!denoiser_ || !is_same(*on_, device)) denoiser_.emplace(device, model_);
@@ -82,6 +85,7 @@ int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene,
         RenderControl control;
         control.seconds = o.seconds;
         control.cancelled = &interrupted;
+        control.light = std::any_of(outputs.begin(), outputs.end(), is_exr_path) || (denoiser && denoiser->wants_light());
         std::atomic<int> reached{0};
         control.progress = [&](const RenderProgress& p) {
             if (reached.exchange(p.samples) < p.samples) spdlog::debug("{} samples per pixel done", p.samples);

@@ -46,6 +46,12 @@ ChannelPlan::ChannelPlan(const Model& model, bool with_target)
     if (with_target) planes_.insert(planes_.end(), {"target.R", "target.G", "target.B"});
 }
 
+bool reads_light(const Model& model) {
+    const ChannelPlan plan(model, false);
+    return std::any_of(plan.planes().begin(), plan.planes().end(),
+                       [](const std::string& name) { return known_colour(name) >= 0 || name.rfind("light.", 0) == 0; });
+}
+
 int ChannelPlan::plane(const std::string& name) const {
     const auto at = std::find(planes_.begin(), planes_.end(), name);
     return at == planes_.end() ? -1 : static_cast<int>(at - planes_.begin());

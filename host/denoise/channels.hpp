@@ -46,6 +46,9 @@ private:
     int plane(const std::string& name) const; // its number, -1: not among them
 };
 
+/// Whether a model reads the light.* channels of a frame.
+bool reads_light(const Model& model);
+
 /// DESIGN.md "Denoiser": 0.18 / exp2(mean log2 luminance), the mean over blocks of 16x16 pixels whose mean opacity is above 1/64 and whose
 /// luminance is above 0; 1 where there is none. Reads the whole frame: R G B less background, opacity.A (else A).
 double exposure_of(const Frame& frame);

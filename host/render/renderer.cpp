@@ -266,14 +266,16 @@ void Renderer::march(Frame& frame, bool features, const RenderControl& control) 
         "depth.deviation", "depth.half", "light.key.R", "light.key.G", "light.key.B", "light.sky.R", "light.sky.G", "light.sky.B"};
     static const std::vector<std::string> color_names{"R", "G", "B", "A"};
     const March kind = features ? March::features : scene_.mode == Mode::dvr ? March::dvr : March::mip;
-    const auto& names = features ? feature_names : color_names;
+    const bool lit = features && control.light;
+    auto names = features ? feature_names : color_names;
+    names.resize(march_planes(kind, lit));
     const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
 
     std::vector<float> planes(names.size() * numbers_);
-    if (features) light_features();
+    if (lit) light_features();
     dealer_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
-        if (features)
+        if (lit)
             w.marcher.emplace(w.device, *w.volume, *w.light, *w.keys, *w.sky, scene_.feature_samples);
         else
             w.marcher.emplace(w.device, *w.volume, *w.light, kind, scene_.feature_samples);

@@ -24,6 +24,7 @@ struct RenderProgress {
 };
 
 struct RenderControl {
+    bool light = true;                                   ///< features have light.* channels (the others' bits do not depend on it)
     double seconds = 0;                                  ///< stop adding passes when they would end later than this; 0: no limit
     const std::atomic<bool>* cancelled = nullptr;        ///< set by Ctrl-C: the passes finished so far are the result
     std::function<void(const RenderProgress&)> progress; ///< called from the calling thread or a worker, now and then

@@ -181,6 +181,24 @@ TEST_F(Render, OtherModesAndLights) {
     }
 }
 
+TEST_F(Render, MarchesLightWhereItIsWanted) {
+    const auto lights = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"--profile"};
+        words.insert(words.end(), more.begin(), more.end());
+        const Outcome o = run_ball(words);
+        EXPECT_EQ(o.exit_code, 0) << o.err;
+        const std::string said = o.out + o.err;
+        EXPECT_EQ(said.find("sky_light") == std::string::npos, said.find("direct_light") == std::string::npos) << said;
+        return said.find("direct_light") != std::string::npos;
+    };
+    EXPECT_TRUE(lights({"-o", "a.exr"}));
+    EXPECT_TRUE(lights({"-o", "a.png", "--denoise"}));
+    EXPECT_TRUE(lights({"-o", "a.exr", "--denoise", "--model", "features"}));
+    EXPECT_FALSE(lights({"-o", "a.png", "--denoise", "--model", "features"}));
+    EXPECT_FALSE(lights({"-o", "a.png", "--mode", "dvr"}));
+    EXPECT_TRUE(lights({"-o", "a.exr", "--mode", "mip"}));
+}
+
 TEST_F(Render, InterruptionSavesWhatIsDone) {
     Child child(arguments_of({"ball_24x20x16_uint8.raw", "--tf", "dense.json", "--size", "40x36", "--spp", "1048576", "-o", "a.exr",
                               "--no-features", "--verbose"}),

@@ -28,6 +28,21 @@ Frame made_of(double key, double sky, double ambient, double noise) {
     return f;
 }
 
+TEST(KnownLight, IsReadByModelsThatSaySo) {
+    Model m = default_settings();
+    EXPECT_EQ(reads_light(m), m.control_variate);
+    m.control_variate = false;
+    m.channels = {"R", "G", "B", "albedo.R", "opacity.A"};
+    EXPECT_FALSE(reads_light(m));
+    m.channels.push_back("light.sky.G");
+    EXPECT_TRUE(reads_light(m));
+    m.channels.back() = "known.R";
+    EXPECT_TRUE(reads_light(m));
+    m.channels.pop_back();
+    m.control_variate = true;
+    EXPECT_TRUE(reads_light(m));
+}
+
 TEST(KnownLight, FindsTheSharesThatAFrameIsMadeOf) {
     const Frame f = made_of(1.4, 0.8, 0.05, 0.05);
     const KnownLight known(f);

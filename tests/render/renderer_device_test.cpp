@@ -58,6 +58,23 @@ TEST(Frame, HoldsItsChannels) {
     expect_finite(two);
 }
 
+TEST(Frame, LeavesLightOutThatNobodyWants) {
+    const Voxels v = constant_volume({8, 8, 8});
+    const PreparedVolume prepared(v);
+    Renderer renderer({shared_device()}, prepared, small_scene(1));
+    const Frame lit = renderer.render();
+    RenderControl control;
+    control.light = false;
+    Frame unlit = renderer.render(control);
+    EXPECT_EQ(unlit.channels.size(), lit.channels.size() - 6);
+    for (const auto& [name, values] : lit.channels) {
+        if (name.rfind("light.", 0) == 0)
+            EXPECT_FALSE(unlit.has(name)) << name;
+        else
+            EXPECT_EQ(unlit.at(name), values) << name;
+    }
+}
+
 /// Mean and variance of a pixel are those of its samples, traced one by one.
 TEST(Frame, MeanAndVarianceAreThoseOfTheSamples) {
     constexpr int spp = 11;
