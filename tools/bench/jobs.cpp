@@ -88,7 +88,8 @@ void fill(Row& row, const Stage& stage, const StageRun& run, const Timing& t, do
 }
 
 json measure_stage(const json& request) {
-    const Stage& stage = stage_named(request.at("stage"));
+    const std::string stage_name = request.at("stage");
+    const Stage& stage = stage_named(stage_name);
     Row row;
     row.stage = stage.name;
     row.unit = stage.unit;
@@ -164,7 +165,7 @@ json compare_candidate(const json& request) {
         const DeviceFacts facts = find_device(device_from(request.at("device")));
         const Tunables base = request.at("base"), candidate = request.at("candidate");
         double product = 1, most_spread = 0;
-        for (const json& name : request.at("stages")) {
+        for (const std::string name : request.at("stages")) {
             const Stage& stage = stage_named(name);
             const std::string device = request.at("device").dump();
             if (bases.size() > 3) bases.erase(bases.begin());
