@@ -1,6 +1,8 @@
 // Where the parts of the computed skull are: the head's bones and teeth, stretched, some teeth lost; a holder under them.
 #include "host/volume/phantom_parts.hpp"
 
+#include <algorithm>
+
 namespace clvr {
 namespace {
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "tests/io/volume_writers.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace clvr::test {

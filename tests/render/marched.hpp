@@ -4,6 +4,8 @@
 #include "tests/reference/march.hpp"
 #include "tests/render/scenes.hpp"
 
+#include <algorithm>
+
 namespace clvr::testing {
 
 /// Values of plane p at the pixel number n: plane(p)[n], numbers as the renderer counts pixels, in 4x4 blocks.

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <map>
@@ -88,8 +89,7 @@ void fill(Row& row, const Stage& stage, const StageRun& run, const Timing& t, do
 }
 
 json measure_stage(const json& request) {
-    const std::string stage_name = request.at("stage");
-    const Stage& stage = stage_named(stage_name);
+    const Stage& stage = stage_named(request.at("stage").get_ref<const std::string&>());
     Row row;
     row.stage = stage.name;
     row.unit = stage.unit;
@@ -165,8 +165,8 @@ json compare_candidate(const json& request) {
         const DeviceFacts facts = find_device(device_from(request.at("device")));
         const Tunables base = request.at("base"), candidate = request.at("candidate");
         double product = 1, most_spread = 0;
-        for (const std::string name : request.at("stages")) {
-            const Stage& stage = stage_named(name);
+        for (const json& name : request.at("stages")) {
+            const Stage& stage = stage_named(name.get_ref<const std::string&>());
             const std::string device = request.at("device").dump();
             if (bases.size() > 3) bases.erase(bases.begin());
             auto found = std::find_if(bases.begin(), bases.end(),
