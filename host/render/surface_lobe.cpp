@@ -36,10 +36,6 @@ double directional_albedo(double mu) {
     return sum / inside;
 }
 
-} // namespace
-
-namespace {
-
 std::vector<float> make_table() {
     std::vector<double> e(intervals + 1);
     for (int k = 0; k <= intervals; ++k) e[k] = directional_albedo(std::max(1e-4, static_cast<double>(k) / intervals));

@@ -102,7 +102,7 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
 }
 
 // Writes planes of `stride` values, a multiple of 16, at pixel - first_pixel. Features: albedo RGB, normal XYZ, depth, opacity, depth deviation,
-// half depth, and the rays' LightSums into `sums`. dvr, mip: R G B A.
+// half depth; with CLVR_LIT the rays' LightSums, too, into `sums`. dvr, mip: R G B A.
 __kernel void march(VOLUME_ARGS, __global const float* coarse, __constant RenderParams* render, SUM_ARGS uint first_pixel, uint pixels, uint stride,
                     __global float* planes) {
     VOLUME_HERE(vol);

@@ -80,23 +80,17 @@ TEST_F(Sobol, PointsOfDifferentSetsKnowNothingOfEachOther) {
     const auto a = of(0, 5, 0), other_purpose = of(0, 6, 0), neighbour = of(0, 5, 1), later = of(1, 7, 0);
     key[0] ^= 1;
     const auto other_frame = of(0, 5, 0);
-    const auto even = [&](const std::string& what, const auto& x, const auto& y) {
+    const auto even = [](const char* what, const std::vector<Point>& p, float Point::*x, const std::vector<Point>& q, float Point::*y) {
         std::vector<double> counts(bins * bins, 0);
-        for (std::uint32_t i = 0; i < n; ++i) ++counts[static_cast<int>(x(i) * bins) * bins + static_cast<int>(y(i) * bins)];
+        for (std::uint32_t i = 0; i < n; ++i) ++counts[static_cast<int>(p[i].*x * bins) * bins + static_cast<int>(q[i].*y * bins)];
         expect_counts(counts, std::vector<double>(bins * bins, n / double{bins * bins}), what);
     };
-    even(
-        "one point's coordinates", [&](auto i) { return a[i].x; }, [&](auto i) { return a[i].y; });
-    even(
-        "another purpose", [&](auto i) { return a[i].x; }, [&](auto i) { return other_purpose[i].x; });
-    even(
-        "another purpose, across", [&](auto i) { return a[i].y; }, [&](auto i) { return other_purpose[i].x; });
-    even(
-        "another sample and purpose", [&](auto i) { return a[i].x; }, [&](auto i) { return later[i].y; });
-    even(
-        "the next pixel", [&](auto i) { return a[i].x; }, [&](auto i) { return neighbour[i].x; });
-    even(
-        "another frame", [&](auto i) { return a[i].x; }, [&](auto i) { return other_frame[i].x; });
+    even("one point's coordinates", a, &Point::x, a, &Point::y);
+    even("another purpose", a, &Point::x, other_purpose, &Point::x);
+    even("another purpose, across", a, &Point::y, other_purpose, &Point::x);
+    even("another sample and purpose", a, &Point::x, later, &Point::y);
+    even("the next pixel", a, &Point::x, neighbour, &Point::x);
+    even("another frame", a, &Point::x, other_frame, &Point::x);
 }
 
 TEST_F(Sobol, WhatADecisionLeavesIsUniformAgain) {
