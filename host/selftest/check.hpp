@@ -46,6 +46,6 @@ Outcome check_denoised(Device& device);
 
 // training_checks.cpp
 Outcome check_gradient(Device& device); ///< against differences of the loss along each tensor's gradient
-Outcome check_training(Device& device); ///< a few steps: the loss falls as it should, twice with the same bits
+Outcome check_training(Device& device); ///< a few steps: the hash of their losses and weights
 
 } // namespace clvr::selftest

@@ -140,6 +140,17 @@ Model golden_network() {
 
 Frame golden_denoised(const Device& device) { return Denoiser(device, golden_network()).denoise(golden_noisy_frame()); }
 
+Model tiny_network() {
+    Model m;
+    m.channels = {"R", "G", "B", "albedo.G", "normal.Z", "depth.Z"};
+    m.hidden = 4;
+    m.kernel = 3;
+    m.levels = {{4, 32}, {8, 64}};
+    m.exposure = m.opacity_weight = true;
+    initialise(m, 3);
+    return m;
+}
+
 Frame golden_picture(Device device) {
     Scene s;
     s.volume = "golden";
@@ -150,14 +161,7 @@ Frame golden_picture(Device device) {
     s.seed = 7;
     s.bounces = 2;
     s.phase_g = 0.25;
-    Model network;
-    network.channels = {"R", "G", "B", "albedo.G", "normal.Z", "depth.Z"};
-    network.hidden = 4;
-    network.kernel = 3;
-    network.levels = {{4, 32}, {8, 64}};
-    network.exposure = network.opacity_weight = true;
-    initialise(network, 3);
-    return Denoiser(device, network).denoise(Renderer({device}, small_volume(), s).render());
+    return Denoiser(device, tiny_network()).denoise(Renderer({device}, small_volume(), s).render());
 }
 
 } // namespace clvr::selftest

@@ -118,11 +118,13 @@ void Gradients::weight_gradients(NeuralGrid& forward, int images, const Buffer& 
     const double pixels = static_cast<double>(p.width) * p.height * images;
     const std::size_t lane_items = lanes / static_cast<std::size_t>(width_);
     const auto count = static_cast<cl_uint>(parameters_);
-    const Range job_group{lane_items, width_ == 1 ? 4u : 1u}; // 16 work-items are half of what GPUs run at once
     const auto weights = [&](Kernel& kernel, int in, int out, int block, const Buffer& from, const Buffer& gradient, std::size_t at) {
         const std::size_t jobs = static_cast<std::size_t>(out / block * in * kernel_);
-        device_.launch(kernel, {lane_items, jobs, n}, job_group, {4 * pixels * (in + out), 2 * pixels * in * out * kernel_ * kernel_},
-                       forward.params(), from, gradient, lanes_, count, static_cast<cl_uint>(at));
+        // 16 work-items are half of what GPUs run at once: four jobs share a group where the kernel can.
+        const std::size_t wanted = width_ == 1 ? 64 : lane_items, together = std::max<std::size_t>(kernel.group(wanted).x / lane_items, 1);
+        device_.launch(kernel, {lane_items, jobs, n}, {lane_items, together},
+                       {4 * pixels * (in + out), 2 * pixels * in * out * kernel_ * kernel_}, forward.params(), from, gradient, lanes_,
+                       count, static_cast<cl_uint>(at));
     };
     const auto biases = [&](int channels, const Buffer& gradient, std::size_t at) {
         device_.launch(bias_gradient_, {lane_items, static_cast<std::size_t>(channels), n}, {lane_items}, {4 * pixels * channels, 0},

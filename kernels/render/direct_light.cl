@@ -1,6 +1,6 @@
 // Direct light of the features, without noise: CLVR_KEYS lights of one direction each by a march towards them, the rest from the grid of sky light. How much
-// of a light arrives is looked up at one point of each ray that march summed, the quantile of its opacity that differs from ray to ray of a pixel. (Picked
-// among samples as they come, it would be another one for every small change.) One work-item a packet of pixels.
+// of a light arrives is looked up at one point of each ray that march summed: at a quantile of its weight that differs from ray to ray of a pixel, between the
+// samples. (Picked among samples, it would be another one for every small change.) One work-item a packet of pixels.
 #include "lib/feature_pixels.clh"
 #include "lib/harmonics.clh"
 #include "lib/light_sums.clh"
@@ -39,7 +39,7 @@ static inline float4 not_negative(float4 v) { return v > (float4)(0.0f) ? v : (f
 
 // Sky light at an index position: the corners around it by trilinear weights; near a surface those in front of it count most, as corners inside what is
 // opaque are dark (as light probes are weighted by Majercik et al.: "Dynamic diffuse global illumination with ray-traced irradiance fields", JCGT 8(2), 2019).
-// `normal`: in cells of the grid, its greatest component 1; `surface`: layer_share. Scalar code.
+// `normal`: in cells of the grid, its greatest component 1; `surface`: how far it is one, 0 to 1. Scalar code.
 static inline void sky_around(const DirectLight* light, float3 p, float3 normal, float surface, float4* sum) {
     int4 n = light->grid->corners, log2_edge = light->grid->log2_edge;
     float3 edge = (float3)((float)(1 << log2_edge.x), (float)(1 << log2_edge.y), (float)(1 << log2_edge.z)), at = p / edge;
@@ -64,23 +64,6 @@ static inline void sky_around(const DirectLight* light, float3 p, float3 normal,
     for (int k = 0; k < CLVR_SKY_TERMS; ++k) sum[k] *= scale;
 }
 
-// How far a ray is stopped by a thin layer: its opacity where the weight's deviation is below a voxel, 0 from four on, between them a cubic; less where the
-// normals point anywhere (`coherence`: length of their mean). Into *t: the quantile (r + 1/2) / 4 for ray r of four, by the weight's mean and
-// deviation; *before: from there to where the layer begins [mm].
-static inline vfloat layer_share(const LightSums* s, int ray, vfloat coherence, float voxel, vfloat* t, vfloat* before) {
-    // sqrt(12) (quantile - 1/2) deviations from the mean where the weight is even, -1 - ln(1 - quantile) where it falls to nothing.
-    const float even[4] = {-1.29903811f, -0.433012702f, 0.433012702f, 1.29903811f}, falling[4] = {-0.866468592f, -0.529996371f, -0.0191707468f, 1.07944154f};
-    vfloat weight = v_select(v_gt(s->weight, (vfloat)(0.0f)), s->weight, (vfloat)(1.0f)), mean = s->moment / weight;
-    vfloat deviation = sqrt(v_max(fma(-mean, mean, s->moment2 / weight), (vfloat)(0.0f)));
-    vfloat x = v_clamp(fma(deviation, (vfloat)(-0.33333333f / voxel), (vfloat)(1.33333333f)), (vfloat)(0.0f), (vfloat)(1.0f));
-    vfloat opacity = v_min(s->weight, (vfloat)(1.0f)), squared = opacity * opacity, stopped = squared * squared * opacity; // ^5: right at the optical depth 2
-    float at_even = CLVR_RAYS == 1 ? 0.0f : even[ray], at_falling = CLVR_RAYS == 1 ? -0.306852819f : falling[ray];
-    *t = s->first + v_max(fma(deviation, fma(stopped, (vfloat)(at_falling - at_even), (vfloat)(at_even)), mean), (vfloat)(0.0f));
-    *before = s->first + mean - deviation - *t;
-    vfloat faces = v_clamp((coherence - 0.5f) * 2.5f, (vfloat)(0.0f), (vfloat)(1.0f));
-    return x * x * fma(x, (vfloat)(-2.0f), (vfloat)(3.0f)) * opacity * faces;
-}
-
 // Integrals of m^n / (m + slope) over m in 0..1, n = 1 to 4. A ray that enters a layer at the cosine `slope` to its normal meets light from the cosine m that
 // has crossed the layer as well: the share m / (m + slope) of it arrives (Lommel, Seeliger; Chandrasekhar: "Radiative transfer", 1950, section 15).
 typedef struct {
@@ -101,23 +84,19 @@ static inline void add_direct_light(const LightSums* s, const DirectLight* light
     vmask seen = v_gt(s->weight, (vfloat)(0.0f));
     if (!v_any(seen)) return;
     vfloat coherence = sqrt(inner3(s->normal, s->normal)) / v_select(seen, s->weight, (vfloat)(1.0f));
-    vfloat t, before, layer = layer_share(s, number, coherence, light->grid->voxel.x, &t, &before);
+    vfloat layer = v_min(s->weight, (vfloat)(1.0f)) * v_clamp((coherence - 0.5f) * 2.5f, (vfloat)(0.0f), (vfloat)(1.0f));
     Vec3 normal = unit3(s->normal), outward = rotate3(vol->p->to_index, scaled(normal, (vfloat)(light->grid->voxel.x))); // a voxel's length, in index space
-    vfloat entered = v_max(-inner3(normal, dir), (vfloat)(0.0f)); // cosine; times `layer`, as a ray that is not stopped crosses less
+    Vec3 from = along(ray->o, ray->d, s->place);
 #pragma nounroll
     for (int k = 0; k < CLVR_KEYS; ++k) {
-        // Light from before a layer: marched from there, the layer crossed by the law of LayerIntegrals. From behind it: marched from within.
-        Vec3 in = key_direction(light->keys + k, number);
-        vfloat cosine = inner3(normal, in), share = v_select(v_gt(cosine, (vfloat)(0.0f)), layer, (vfloat)(0.0f));
-        Vec3 start = along(along(ray->o, ray->d, fma(share, before, t)), outward, share * 1.5f);
-        vfloat arrives = arriving(vol, coarse, start, in, 2.0f * render->step, seen), most = v_max(cosine, (vfloat)(1e-3f));
-        arrives *= fma(share, most / fma(entered, layer, most) - 1.0f, (vfloat)(1.0f));
+        vfloat arrives = arriving(vol, coarse, from, key_direction(light->keys + k, number), render->step, seen);
         Vec3 irradiance = scaled(vec3_of(light->keys[k].irradiance), v_select(seen, arrives, (vfloat)(0.0f)));
         *by_key = along(*by_key, product(s->keyed[k], irradiance), (vfloat)(1.0f));
     }
 
-    LayerIntegrals i = layer_integrals(entered * layer);
-    Vec3 p = along(along(ray->o, ray->d, fma(layer, before, t)), outward, layer * 1.5f);
+    // A cosine; times `layer`, as a ray that is not stopped crosses less.
+    LayerIntegrals i = layer_integrals(v_max(-inner3(normal, dir), (vfloat)(0.0f)) * layer);
+    Vec3 p = along(from, outward, layer);
     float place[3][CLVR_WIDTH], out[3][CLVR_WIDTH], n[3][CLVR_WIDTH], d[3][CLVR_WIDTH], integral[4][CLVR_WIDTH], front[CLVR_WIDTH], sharp[CLVR_WIDTH];
     float on[3][CLVR_WIDTH], in[3][CLVR_WIDTH];
     int lit[CLVR_WIDTH];

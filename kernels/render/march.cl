@@ -61,6 +61,9 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
     vint k = (vint)(0);
 #if CLVR_LIT
     sums->lit = no_light();
+    WeightCurve curve;
+    curve.begin = curve.end = (vfloat)(0.0f);
+    for (int level = 0; level < WEIGHT_LEVELS; ++level) curve.passed[level] = (vfloat)(0.0f);
 #endif
     for (;;) {
         Int3 i;
@@ -84,7 +87,8 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
             color = scaled(color, lit);
 #endif
 #if CLVR_LIT
-            add_light_sample(&sums->lit, sums->lobe, sums->keys, number, seen, w, t, dir_world, color, normal, surface_chance(vol->p, steepness),
+            add_to_curve(&curve, seen, t, step, sums->lit.weight, w);
+            add_light_sample(&sums->lit, sums->lobe, sums->keys, number, seen, w, dir_world, color, normal, surface_chance(vol->p, steepness),
                              render->phase_g);
 #endif
             sums->weight = fma(transmitted, absorbed, sums->weight);
@@ -98,6 +102,9 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
         }
 #endif
     }
+#if CLVR_LIT
+    sums->lit.place = light_place(&curve, sums->lit.weight, number);
+#endif
     sums->half_depth += half_depth;
 }
 

@@ -7,7 +7,7 @@ CLVR_SHARED_BEGIN
 #define CLVR_KEYS_MAX 6                         ///< key light, headlight, suns of an environment image
 #define CLVR_SKY_TERMS 9                        ///< real spherical harmonics up to order 2
 #define CLVR_SKY_DIRECTIONS 64                  ///< a multiple of every packet width
-#define CLVR_LIGHT_SUMS(keys) (13 + 3 * (keys)) ///< numbers of a ray's LightSums (lib/light_sums.clh)
+#define CLVR_LIGHT_SUMS(keys) (11 + 3 * (keys)) ///< numbers of a ray's LightSums (lib/light_sums.clh)
 
 /// Light from one direction, or from a small disc around it. World space, unit vectors.
 typedef struct KeyLight {

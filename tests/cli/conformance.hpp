@@ -1,5 +1,5 @@
-// One hash for all implementations: the picture of the self-test (render, features, denoised) in a process of its own with another driver
-// or other settings.
+// One hash for all implementations: the picture of the self-test (render, features, denoised) and its training, in a process of its own
+// with another driver or other settings.
 #pragma once
 #include "host/selftest/golden_values.hpp"
 #include "tests/cli/home.hpp"
@@ -19,9 +19,9 @@ protected:
         EXPECT_EQ(outcome.exit_code, 0) << outcome.err << outcome.out;
         return nlohmann::json::parse(outcome.out, nullptr, false);
     }
-    /// The device computes the picture, whose hash the report must show. Gives the report of the first device back.
-    nlohmann::json expect_picture(const Environment& environment, std::vector<std::string> arguments = {}) const {
-        arguments.insert(arguments.end(), {"--check", "trust,picture"});
+    /// The devices compute the picture and the training, whose hashes the report must show. Gives the report of the first device back.
+    nlohmann::json expect_golden(const Environment& environment, std::vector<std::string> arguments = {}) const {
+        arguments.insert(arguments.end(), {"--check", "trust,picture,training"});
         const nlohmann::json report = tested(environment, arguments);
         if (!report.is_object()) {
             ADD_FAILURE() << "no report";
@@ -30,6 +30,7 @@ protected:
         for (const auto& device : report.at("devices")) {
             EXPECT_EQ(device.at("checks").at(0).at("ok"), true) << device.dump(2);
             EXPECT_EQ(device.at("checks").at(1).at("found"), selftest::golden_picture_hash) << device.dump(2);
+            EXPECT_EQ(device.at("checks").at(2).at("found"), selftest::golden_training_hash) << device.dump(2);
         }
         return report.at("devices").at(0);
     }

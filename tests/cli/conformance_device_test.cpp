@@ -13,7 +13,7 @@ protected:
 };
 
 TEST_F(Pocl, AnyNumberOfThreads) {
-    for (const char* threads : {"1", "3"}) expect_picture({{"POCL_MAX_PTHREAD_COUNT", threads}}, pocl);
+    for (const char* threads : {"1", "3"}) expect_golden({{"POCL_MAX_PTHREAD_COUNT", threads}}, pocl);
 }
 
 TEST_F(Pocl, SubDevices) {
@@ -23,7 +23,7 @@ TEST_F(Pocl, SubDevices) {
 }
 
 TEST_F(Pocl, DenormalsOff) {
-    const auto device = expect_picture({{"POCL_EXTRA_BUILD_FLAGS", "-cl-denorms-are-zero"}}, pocl);
+    const auto device = expect_golden({{"POCL_EXTRA_BUILD_FLAGS", "-cl-denorms-are-zero"}}, pocl);
     EXPECT_THAT(device.at("checks").at(0).at("found").get<std::string>(), testing::HasSubstr("flushed")) << "the setting had no effect";
 }
 

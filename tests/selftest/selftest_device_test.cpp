@@ -87,6 +87,7 @@ const Fault faults[] = {
      {"furnace"}},
     {"splat", "denoise/splat.cl", "(float4)(lower[i])", "(float4)(lower[i] * 0.999f)", {"denoised"}},
     {"backward", "train/guide_gradient.cl", "fma(-a.w, colour.w", "fma(a.w, colour.w", {"gradient"}},
+    {"order", "train/sum_runs.cl", "(size_t)j * step", "(size_t)(run - 1 - j) * step", {"training"}},
     {"moments", "train/adam.cl", "rates.y * g", "rates.x * g", {"training"}},
 };
 INSTANTIATE_TEST_SUITE_P(Devices, Faulty, testing::ValuesIn(faults), [](const auto& fault) { return std::string(fault.param.name); });
