@@ -78,9 +78,10 @@ static inline LayerIntegrals layer_integrals(vfloat slope) {
     return i;
 }
 
-// Adds a ray's light to *by_key, *by_sky: linear RGB radiance. `number`: of the ray in its pixel.
-static inline void add_direct_light(const LightSums* s, const DirectLight* light, const Volume* vol, __global const float* coarse, const Ray* ray, Vec3 dir,
-                                    int number, __constant RenderParams* render, Vec3* by_key, Vec3* by_sky) {
+// Adds a ray's light to *by_key, *by_sky: linear RGB radiance. `keyed`: the ray's sums per key; `number`: of the ray in its pixel.
+static inline void add_direct_light(const LightSums* s, __global const float* keyed, uint stride, const DirectLight* light, const Volume* vol,
+                                    __global const float* coarse, const Ray* ray, Vec3 dir, int number, __constant RenderParams* render, Vec3* by_key,
+                                    Vec3* by_sky) {
     vmask seen = v_gt(s->weight, (vfloat)(0.0f));
     if (!v_any(seen)) return;
     vfloat coherence = sqrt(inner3(s->normal, s->normal)) / v_select(seen, s->weight, (vfloat)(1.0f));
@@ -91,7 +92,7 @@ static inline void add_direct_light(const LightSums* s, const DirectLight* light
     for (int k = 0; k < CLVR_KEYS; ++k) {
         vfloat arrives = arriving(vol, coarse, from, key_direction(light->keys + k, number), render->step, seen);
         Vec3 irradiance = scaled(vec3_of(light->keys[k].irradiance), v_select(seen, arrives, (vfloat)(0.0f)));
-        *by_key = along(*by_key, product(s->keyed[k], irradiance), (vfloat)(1.0f));
+        *by_key = along(*by_key, product(load_keyed(keyed, stride, k), irradiance), (vfloat)(1.0f));
     }
 
     // A cosine; times `layer`, as a ray that is not stopped crosses less.
@@ -144,11 +145,12 @@ __kernel void direct_light(VOLUME_ARGS, __global const float* coarse, __constant
     pixel_corners(render, first_pixel + first, &x, &y);
     Vec3 by_key = vec3(zero, zero, zero), by_sky = by_key;
     for (int number = 0; number < CLVR_RAYS; ++number) {
-        LightSums s = load_sums(sums + (uint)number * CLVR_LIGHT_SUMS(CLVR_KEYS) * stride + first, stride);
+        __global const float* of_ray = sums + (uint)number * CLVR_LIGHT_SUMS(CLVR_KEYS) * stride + first;
+        LightSums s = load_sums(of_ray, stride);
         Vec3 o, d;
         feature_ray(render, x, y, number, &o, &d);
         Ray ray = make_ray(vol.p, o, d);
-        add_direct_light(&s, &light, &vol, coarse, &ray, d, number, render, &by_key, &by_sky);
+        add_direct_light(&s, of_ray, stride, &light, &vol, coarse, &ray, d, number, render, &by_key, &by_sky);
     }
     float share = 1.0f / (float)CLVR_RAYS;
     vfloat out[6] = {by_key.x * share, by_key.y * share, by_key.z * share, by_sky.x * share, by_sky.y * share, by_sky.z * share};

@@ -62,8 +62,7 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
 #if CLVR_LIT
     sums->lit = no_light();
     WeightCurve curve;
-    curve.begin = curve.end = (vfloat)(0.0f);
-    for (int level = 0; level < WEIGHT_LEVELS; ++level) curve.passed[level] = (vfloat)(0.0f);
+    begin_curve(&curve);
 #endif
     for (;;) {
         Int3 i;
