@@ -33,11 +33,14 @@ Loss loss_of(const Options& o) {
                                                    {"reference", Loss::reference},
                                                    {"smape", Loss::smape},
                                                    {"relative-l2", Loss::relative_l2},
-                                                   {"shifted-gamma-l2", Loss::shifted_gamma_l2}};
+                                                   {"shifted-gamma-l2", Loss::shifted_gamma_l2},
+                                                   {"shifted-gamma-bands", Loss::shifted_gamma_bands}};
     for (const auto& [name, loss] : losses)
         if (o.loss == name) return loss;
-    throw Error(ErrorKind::usage,
-                fmt::format("is \"{}\"; expected shifted-gamma, shifted-gamma-l2, reference, smape or relative-l2", o.loss), "--loss");
+    throw Error(
+        ErrorKind::usage,
+        fmt::format("is \"{}\"; expected shifted-gamma, shifted-gamma-l2, shifted-gamma-bands, reference, smape or relative-l2", o.loss),
+        "--loss");
 }
 
 /// "PIXELS:CODES".
@@ -159,7 +162,7 @@ void add_train_command(CLI::App& app) {
         ->group("Training");
     c->add_option("--clip-norm", t.step.clip_norm, "Greatest norm of a gradient; 0: not clipped [0]")->group("Training");
     c->add_option("--loss", o->loss, "What training makes small [shifted-gamma]")
-        ->type_name("shifted-gamma|shifted-gamma-l2|reference|smape|relative-l2")
+        ->type_name("shifted-gamma|shifted-gamma-l2|shifted-gamma-bands|reference|smape|relative-l2")
         ->group("Training");
     c->add_option("--target", o->target, "The reference, or another noisy frame of the view [reference]")
         ->type_name("reference|noisy")

@@ -17,6 +17,14 @@ std::size_t planes_bytes(const shared::DenoiseParams& p, std::size_t channels, i
     return channels * p.plane * 4 * static_cast<std::size_t>(images);
 }
 
+/// Of an image: column sums of the errors, and their bands (train/bands.cl).
+std::size_t column_bytes(const shared::DenoiseParams& p) {
+    return std::size_t{12} * shared::band_blocks(p.height) * shared::band_columns(p.width);
+}
+std::size_t band_bytes(const shared::DenoiseParams& p) {
+    return std::size_t{12} * shared::band_blocks(p.height) * shared::band_blocks(p.width);
+}
+
 } // namespace
 
 std::size_t Gradients::bytes(const Device& device, const Model& model, const BatchShape& b) {
@@ -24,7 +32,7 @@ std::size_t Gradients::bytes(const Device& device, const Model& model, const Bat
     const std::size_t pixels = static_cast<std::size_t>(b.width) * b.height, images = static_cast<std::size_t>(b.images);
     return planes_bytes(p, 3 + static_cast<std::size_t>(model.outputs() + model.hidden), b.images) +
            images * (16 * pixels * model.levels.size() + std::size_t{16} * p.cells + model.parameters() * lanes * 4 +
-                     lanes * 4 * static_cast<std::size_t>(b.height));
+                     lanes * 4 * static_cast<std::size_t>(b.height) + column_bytes(p) + band_bytes(p));
 }
 
 std::size_t Gradients::largest_bytes(const Device& device, const Model& model, const BatchShape& b) {
@@ -36,13 +44,17 @@ std::size_t Gradients::largest_bytes(const Device& device, const Model& model, c
 }
 
 Gradients::Gradients(const Device& device, const Model& model, Loss loss, const NeuralGrid& forward, const BatchShape& shape)
-    : device_(device), channels_(static_cast<int>(model.channels.size())), hidden_(model.hidden), outputs_(model.outputs()),
-      levels_(static_cast<int>(model.levels.size())), kernel_(model.kernel), parameters_(model.parameters()),
-      conv1_(model.conv1_weight.size()), bias1_(model.conv1_bias.size()), conv2_(model.conv2_weight.size()),
-      block1_(block_of(device, hidden_)), block2_(block_of(device, outputs_)) {
+    : device_(device), with_bands_(loss == Loss::shifted_gamma_bands), channels_(static_cast<int>(model.channels.size())),
+      hidden_(model.hidden), outputs_(model.outputs()), levels_(static_cast<int>(model.levels.size())), kernel_(model.kernel),
+      parameters_(model.parameters()), conv1_(model.conv1_weight.size()), bias1_(model.conv1_bias.size()),
+      conv2_(model.conv2_weight.size()), block1_(block_of(device, hidden_)), block2_(block_of(device, outputs_)) {
     width_ = NeuralGrid::pixel_width(device_);
     const std::string width = std::to_string(width_), size = std::to_string(kernel_);
     loss_ = device_.kernel("train/loss", {{"CLVR_WIDTH", width}, {"CLVR_LOSS", std::to_string(static_cast<int>(loss))}});
+    if (with_bands_) {
+        column_errors_ = device_.kernel("train/column_errors", {{"CLVR_WIDTH", width}});
+        bands_ = device_.kernel("train/bands");
+    }
     slice_gradient_ = device_.kernel("train/slice_gradient", {{"CLVR_WIDTH", width}});
     normalise_gradient_ = device_.kernel("train/normalise_gradient");
     guide_gradient_ = device_.kernel("train/guide_gradient", {{"CLVR_WIDTH", width}});
@@ -77,6 +89,8 @@ Gradients::Gradients(const Device& device, const Model& model, Loss loss, const 
     device_.fill(lanes_, 0); // matrices leave those of the weights alone
     loss_lanes_ = device_.buffer(images * static_cast<std::size_t>(p.height) * lanes * 4, "losses by lane");
     row_losses_ = device_.buffer(images * static_cast<std::size_t>(p.height) * 4, "losses by row");
+    if (with_bands_) columns_ = device_.buffer(images * column_bytes(p), "errors by column");
+    banded_ = device_.buffer(with_bands_ ? images * band_bytes(p) : 4, "bands of the errors");
     nothing_ = device_.buffer(16, "no gradient of the colours");
 }
 
@@ -91,8 +105,9 @@ void Gradients::backward(NeuralGrid& forward, int images, float share, const Buf
     const Range lane_items{lanes / static_cast<std::size_t>(width_), static_cast<std::size_t>(p.height), n},
         lane_group{lanes / static_cast<std::size_t>(width_)};
 
-    device_.launch(loss_, lane_items, lane_group, {36 * pixels, 0}, forward.params(), forward.result(), forward.target(), result_gradient_,
-                   share, loss_lanes_);
+    if (with_bands_) find_bands(forward, images);
+    device_.launch(loss_, lane_items, lane_group, {36 * pixels, 0}, forward.params(), forward.result(), forward.target(), banded_,
+                   result_gradient_, share, loss_lanes_);
     device_.launch(sum_lanes_, {rows}, sum_lanes_.group(64), {68.0 * rows, 0}, loss_lanes_, row_losses_, 0u, static_cast<cl_uint>(rows));
     device_.launch(sum_runs_, {n}, {1}, {4.0 * rows, 0}, row_losses_, patch_losses, static_cast<cl_uint>(first), static_cast<cl_uint>(n),
                    static_cast<cl_uint>(p.height), 1u, static_cast<cl_uint>(p.height));
@@ -109,6 +124,18 @@ void Gradients::backward(NeuralGrid& forward, int images, float share, const Buf
     else
         to_hidden_.run(device_, p, images, forward.params(), output_gradient_, hidden_gradient_, forward.hidden());
     weight_gradients(forward, images, patch_gradients, first, matrices);
+}
+
+void Gradients::find_bands(const NeuralGrid& forward, int images) {
+    const shared::DenoiseParams& p = forward.shape();
+    const auto across = static_cast<std::size_t>(shared::band_blocks(p.width)),
+               down = static_cast<std::size_t>(shared::band_blocks(p.height)), planes = std::size_t{3} * static_cast<std::size_t>(images),
+               width = static_cast<std::size_t>(width_);
+    const auto groups = [](std::size_t blocks) { return (blocks + CLVR_BAND_GROUP - 1) / CLVR_BAND_GROUP; };
+    device_.launch(column_errors_, {(static_cast<std::size_t>(p.width) + width - 1) / width, down, planes}, {},
+                   {24.0 * p.width * p.height * images, 0}, forward.params(), forward.result(), forward.target(), columns_);
+    device_.launch(bands_, {groups(across), groups(down), planes}, {}, {4.0 * static_cast<double>(planes * down) * p.width, 0},
+                   forward.params(), columns_, banded_);
 }
 
 void Gradients::weight_gradients(NeuralGrid& forward, int images, const Buffer& patch_gradients, std::size_t first,

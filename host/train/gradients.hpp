@@ -31,15 +31,18 @@ public:
 
 private:
     Device device_;
+    bool with_bands_;
     int channels_, hidden_, outputs_, levels_, kernel_;
     std::size_t parameters_, conv1_, bias1_, conv2_;
     int width_; // lanes of 16 that a work-item takes
-    Kernel loss_, slice_gradient_, normalise_gradient_, guide_gradient_, bias_gradient_, sum_lanes_, sum_runs_;
+    Kernel column_errors_, bands_, loss_, slice_gradient_, normalise_gradient_, guide_gradient_, bias_gradient_, sum_lanes_, sum_runs_;
     Kernel weight_gradient1_, weight_gradient2_;
     int block1_, block2_;
     Convolution to_hidden_;
-    Buffer result_gradient_, upstream_, cell_gradient_, output_gradient_, hidden_gradient_, lanes_, loss_lanes_, row_losses_, nothing_;
+    Buffer result_gradient_, upstream_, cell_gradient_, output_gradient_, hidden_gradient_, lanes_, loss_lanes_, row_losses_, columns_,
+        banded_, nothing_;
 
+    void find_bands(const NeuralGrid& forward, int images);
     void weight_gradients(NeuralGrid& forward, int images, const Buffer& patch_gradients, std::size_t first, MatrixLayers* matrices);
 };
 

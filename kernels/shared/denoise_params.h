@@ -6,6 +6,16 @@ CLVR_SHARED_BEGIN
 
 #define CLVR_LEVELS_MAX 8
 #define CLVR_BLEND_RADIUS 10 ///< of the window that blending back to the noisy input sums over [pixels]
+#define CLVR_BAND_BLOCK 8    ///< of the loss's blocks (train/bands.cl) [pixels]
+#define CLVR_BAND_GROUP 4    ///< of the blocks whose mean is taken off [blocks]
+#define CLVR_BAND_WEIGHT 4.0f
+
+/// Blocks along a side of the picture [pixels]; floats in a row of column sums; pixels of the blocks first .. last - 1.
+static inline int band_blocks(int side) { return (side + CLVR_BAND_BLOCK - 1) / CLVR_BAND_BLOCK; }
+static inline int band_columns(int width) { return (width + 15) / 16 * 16; }
+static inline int band_length(int first, int last, int side) {
+    return (last * CLVR_BAND_BLOCK < side ? last * CLVR_BAND_BLOCK : side) - first * CLVR_BAND_BLOCK;
+}
 
 /// A bilateral grid: `rows` x `columns` x `depth` cells, depth fastest, from cell `offset` of its image's cells on.
 typedef struct GridLevel {

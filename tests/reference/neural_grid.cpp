@@ -165,11 +165,11 @@ struct LossValue {
 int sign(double v) { return (v > 0) - (v < 0); }
 
 LossValue loss_of(GridLoss loss, double out, double target) {
-    if (loss == GridLoss::shifted_gamma || loss == GridLoss::shifted_gamma_l2) {
+    if (loss == GridLoss::shifted_gamma || loss == GridLoss::shifted_gamma_l2 || loss == GridLoss::shifted_gamma_bands) {
         const double low = std::pow(0.01, gamma), steep = gamma * std::pow(0.01, gamma - 1);
         const auto t = [&](double v) { return v >= 0 ? std::pow(v + 0.01, gamma) - low : steep * v; };
         const double e = t(out) - t(target), slope = out >= 0 ? gamma * std::pow(out + 0.01, gamma - 1) : steep;
-        if (loss == GridLoss::shifted_gamma_l2) return {e * e, 2 * e * slope, out >= 0};
+        if (loss != GridLoss::shifted_gamma) return {e * e, 2 * e * slope, out >= 0};
         return {std::abs(e), sign(e) * slope, 2 * sign(e) + (out >= 0)};
     }
     if (loss == GridLoss::reference) {
@@ -184,6 +184,32 @@ LossValue loss_of(GridLoss loss, double out, double target) {
     }
     const double scale = loss == GridLoss::relative_l2 ? target * target + 0.01 : (out + 0.01) * (out + 0.01);
     return {e * e / scale, 2 * e / scale, 0};
+}
+
+/// What loss `shifted_gamma_bands` adds: 4 b^2, b the mean of a block of 8x8 errors about the mean of the 32x32 around it, as a function of
+/// each pixel's colour. As the means of e cover every pixel once, d/de of the sum of 4 b^2 is 8 b.
+std::vector<LossValue> band_losses(const std::vector<double>& result, const std::vector<double>& target, int width, int height) {
+    std::vector<LossValue> errors, out(result.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const LossValue v = loss_of(GridLoss::shifted_gamma, result[i], target[i]);
+        errors.push_back({v.value * (v.slope < 0 ? -1 : 1), std::abs(v.slope), 0});
+    }
+    const auto mean = [&](int x, int y, int edge, int c) { // of the block of this edge around the pixel
+        double sum = 0;
+        int count = 0;
+        for (int j = y / edge * edge; j < std::min(height, y / edge * edge + edge); ++j)
+            for (int i = x / edge * edge; i < std::min(width, x / edge * edge + edge); ++i, ++count)
+                sum += errors[3 * (j * width + i) + c].value;
+        return sum / count;
+    };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const int i = 3 * (y * width + x) + c;
+                const double band = mean(x, y, 8, c) - mean(x, y, 32, c);
+                out[i] = {4 * band * band, 8 * band * errors[i].slope, 0};
+            }
+    return out;
 }
 
 GridPass run(const Network& n, const GridImage& image, GridLoss kind, bool backwards) {
@@ -214,13 +240,19 @@ GridPass run(const Network& n, const GridImage& image, GridLoss kind, bool backw
         return rest;
     };
     pass.result.resize(3 * pixels);
-    std::vector<Rgb> upstream(pixels); // dL/d(blend before remodulation)
     for (std::size_t p = 0; p < pixels; ++p)
         for (int c = 0; c < 3; ++c) {
             double blend = 0;
             for (int l = 0; l < levels; ++l) blend += share(l, p) * sliced[l].sliced[p][c];
             pass.result[3 * p + c] = blend * image.remodulation[3 * p + c] + (image.known.empty() ? 0 : image.known[3 * p + c]);
-            const LossValue v = loss_of(kind, pass.result[3 * p + c], image.target[3 * p + c]);
+        }
+    std::vector<LossValue> banded(3 * pixels, {0, 0, 0});
+    if (kind == GridLoss::shifted_gamma_bands) banded = band_losses(pass.result, image.target, width, height);
+    std::vector<Rgb> upstream(pixels); // dL/d(blend before remodulation)
+    for (std::size_t p = 0; p < pixels; ++p)
+        for (int c = 0; c < 3; ++c) {
+            LossValue v = loss_of(kind, pass.result[3 * p + c], image.target[3 * p + c]);
+            v.value += banded[3 * p + c].value, v.slope += banded[3 * p + c].slope;
             pass.loss += v.value / (3.0 * static_cast<double>(pixels));
             upstream[p][c] = v.slope / (3.0 * static_cast<double>(pixels)) * image.remodulation[3 * p + c];
             pass.sides.push_back(v.side);

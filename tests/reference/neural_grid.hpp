@@ -5,7 +5,7 @@
 
 namespace clvr::reference {
 
-enum class GridLoss { shifted_gamma, reference, smape, relative_l2, noisy, shifted_gamma_l2 }; ///< DESIGN.md "Loss"
+enum class GridLoss { shifted_gamma, reference, smape, relative_l2, noisy, shifted_gamma_l2, shifted_gamma_bands }; ///< DESIGN.md "Loss"
 
 struct Network {
     int channels = 0, hidden = 0, kernel = 5;

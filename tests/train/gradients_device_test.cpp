@@ -120,7 +120,8 @@ constexpr std::pair<Loss, reference::GridLoss> losses[] = {{Loss::shifted_gamma,
                                                            {Loss::smape, reference::GridLoss::smape},
                                                            {Loss::relative_l2, reference::GridLoss::relative_l2},
                                                            {Loss::noisy, reference::GridLoss::noisy},
-                                                           {Loss::shifted_gamma_l2, reference::GridLoss::shifted_gamma_l2}};
+                                                           {Loss::shifted_gamma_l2, reference::GridLoss::shifted_gamma_l2},
+                                                           {Loss::shifted_gamma_bands, reference::GridLoss::shifted_gamma_bands}};
 
 TEST(GradientKernels, MeetTheDoublePrecisionReference) {
     for (const Case& c : cases)

@@ -223,7 +223,8 @@ TEST(Properties, BlackStaysBlackWithoutAGradient) {
     Device device = test_device();
     const Frame done = Denoiser(device, trained_like_model()).denoise(black);
     for (const float v : done.at("G")) ASSERT_EQ(v, 0);
-    for (const Loss loss : {Loss::shifted_gamma, Loss::reference, Loss::smape, Loss::relative_l2, Loss::noisy, Loss::shifted_gamma_l2}) {
+    for (const Loss loss : {Loss::shifted_gamma, Loss::reference, Loss::smape, Loss::relative_l2, Loss::noisy, Loss::shifted_gamma_l2,
+                            Loss::shifted_gamma_bands}) {
         StepConfig config;
         config.loss = loss;
         config.patch = 24;

@@ -108,7 +108,7 @@ TEST_P(LossCase, GradientIsTheSlopeOfTheLoss) {
 }
 INSTANTIATE_TEST_SUITE_P(Losses, LossCase,
                          ::testing::Values(Loss::shifted_gamma, Loss::reference, Loss::smape, Loss::relative_l2, Loss::noisy,
-                                           Loss::shifted_gamma_l2));
+                                           Loss::shifted_gamma_l2, Loss::shifted_gamma_bands));
 
 std::vector<float> trained(int micro_batch, const std::map<std::string, int>& tunables, std::size_t memory = 0,
                            std::vector<Device> devices = {test_device()}) {
