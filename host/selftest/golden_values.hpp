@@ -12,14 +12,14 @@ namespace clvr::selftest {
 /// pixel_hash of each golden scene (golden_scene), the denoised one's of golden_denoised, the rendered and denoised one's of
 /// golden_picture.
 inline const std::map<std::string, std::string> golden_hashes{
-    {"automatic", "a5b89118eca7fafaac992089b19836c3e3bb093ea34371739a072c84f4c5bfe5"},
-    {"dvr", "4a96783eff28eb11c43e95a56abcf12af37adb0cc7c1841ad610ed49f22343a2"},
-    {"gradient", "f96ae0121aa0a7ef180c9f0a2caf6186b179f809e07088380e03b973eac6f6d3"},
+    {"automatic", "434c1b9db066875ce33946bad7084efc3a846d699a0c2c95274274d86b1d0ca8"},
+    {"dvr", "209d48d45362339e7e40d8a8870c7a7860977e1be0443dd3d35f990c2c9d440a"},
+    {"gradient", "b7600bbc7b9a87358f13b092846a4b8c25624389a89178594e2fc4bad1ad3c5f"},
     {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
-    {"phase", "dd371e8e6393659fcf1fb2959d540a4632e61cc06bc8c556e006a34d507cc89a"},
+    {"phase", "058b1810a58a8293e829c4dd945164c674cf4f2e95fe57c110422890b2581fab"},
 };
 inline const std::string golden_denoised_hash = "f96ec492ce7dc7c59752268c3ac332b6b87db09397b1cf84bb0eaa3f572694bf";
-inline const std::string golden_picture_hash = "162bc79a7a5b5f3f8aa95ba6e3c81bcf64e9daad7c0a53b438a04066fe858725";
+inline const std::string golden_picture_hash = "2c07f91612a8c167ca073ebabb40784351204816e48cd06a6cb0b87850e4cd75";
 
 /// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
 inline const std::array<std::pair<const char*, const char*>, 5> golden_functions{{

@@ -12,22 +12,32 @@ typedef struct {
     __global const float4* sky_light; // [corners * 9] (volume/sky_light.cl)
 } DirectLight;
 
-// Transmittance from index position p towards the unit world direction, by midpoints `step` apart.
+// Steps of `step` before they double, in the march towards a key: shadows that are near are sharp.
+#define NEAR_STEPS 8
+
+// Transmittance from index position p towards the unit world direction, by midpoints.
 static inline vfloat arriving(const Volume* vol, __global const float* coarse, Vec3 p, Vec3 dir, float step, vmask lanes) {
     Ray ray = make_ray(vol->p, p, dir);
-    vfloat t0, t1, t, sum = (vfloat)(0.0f);
-    vmask active = begin_march(vol, &ray, lanes, &t0, &t1);
-    float scale = vol->p->extinction * step, enough = 7.0f / scale; // e^-7 is below 1/1000
-    vint k = (vint)(0);
-    for (;;) {
-        Int3 i;
-        Vec3 q = seek_visible(vol, coarse, &ray, t0, t1, (vfloat)(step), &k, &active, &t, &i);
-        if (!v_any(active)) break;
-        sum += v_select(active, opacity_of(vol, stored_value_in(vol, q, i)), (vfloat)(0.0f));
-        active &= v_lt(sum, (vfloat)(enough));
-        k += 1;
+    vfloat begin, end, t, depth = (vfloat)(0.0f);
+    vmask active = begin_march(vol, &ray, lanes, &begin, &end);
+    vfloat near_end = v_min(fma((vfloat)((float)NEAR_STEPS), (vfloat)(step), begin), end);
+    for (int far = 0; far < 2; ++far) {
+        float thickness = vol->p->extinction * step;
+        vfloat t0 = far ? near_end : begin, t1 = far ? end : near_end;
+        vmask inside = active & v_lt(t0, t1);
+        vint k = (vint)(0);
+        for (;;) {
+            Int3 i;
+            Vec3 q = seek_visible(vol, coarse, &ray, t0, t1, (vfloat)(step), &k, &inside, &t, &i);
+            if (!v_any(inside)) break;
+            depth = v_select(inside, fma(opacity_of(vol, stored_value_in(vol, q, i)), (vfloat)(thickness), depth), depth);
+            inside &= v_lt(depth, (vfloat)(7.0f)); // e^-7 is below 1/1000
+            k += 1;
+        }
+        active &= v_lt(depth, (vfloat)(7.0f));
+        step *= 2.0f;
     }
-    return v_exp(sum * -scale);
+    return v_exp(-depth);
 }
 
 // Component by component between 0 and `most`. (The macros of vec.clh are for packets.)
