@@ -161,8 +161,10 @@ void add_train_command(CLI::App& app) {
         ->type_name("constant|cosine")
         ->group("Training");
     c->add_option("--clip-norm", t.step.clip_norm, "Greatest norm of a gradient; 0: not clipped [0]")->group("Training");
-    c->add_option("--loss", o->loss, "What training makes small [shifted-gamma]")
-        ->type_name("shifted-gamma|shifted-gamma-l2|shifted-gamma-bands|reference|smape|relative-l2")
+    c->add_option(
+         "--loss", o->loss,
+         "What training makes small: shifted-gamma, shifted-gamma-l2, shifted-gamma-bands, reference, smape or relative-l2 [shifted-gamma]")
+        ->type_name("LOSS")
         ->group("Training");
     c->add_option("--target", o->target, "The reference, or another noisy frame of the view [reference]")
         ->type_name("reference|noisy")

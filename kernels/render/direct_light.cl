@@ -21,6 +21,7 @@ static inline vfloat arriving(const Volume* vol, __global const float* coarse, V
     vfloat begin, end, t, depth = (vfloat)(0.0f);
     vmask active = begin_march(vol, &ray, lanes, &begin, &end);
     vfloat near_end = v_min(fma((vfloat)((float)NEAR_STEPS), (vfloat)(step), begin), end);
+#pragma nounroll // twice the code is minutes of compiling on rusticl (Mesa 22.3)
     for (int far = 0; far < 2; ++far) {
         float thickness = vol->p->extinction * step;
         vfloat t0 = far ? near_end : begin, t1 = far ? end : near_end;
