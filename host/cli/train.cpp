@@ -26,21 +26,27 @@ struct Options {
     DeviceOptions device;
 };
 
+constexpr std::pair<const char*, Loss> losses[] = {{"shifted-gamma", Loss::shifted_gamma},
+                                                   {"shifted-gamma-l2", Loss::shifted_gamma_l2},
+                                                   {"shifted-gamma-bands", Loss::shifted_gamma_bands},
+                                                   {"reference", Loss::reference},
+                                                   {"smape", Loss::smape},
+                                                   {"relative-l2", Loss::relative_l2}};
+
+/// "shifted-gamma, ..., smape or relative-l2".
+std::string loss_names() {
+    std::string names;
+    for (const auto& [name, loss] : losses)
+        names += (names.empty() ? "" : name == std::end(losses)[-1].first ? " or " : ", ") + std::string(name);
+    return names;
+}
+
 Loss loss_of(const Options& o) {
     if (o.target == "noisy") return Loss::noisy;
     if (o.target != "reference") throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected reference or noisy", o.target), "--target");
-    const std::pair<const char*, Loss> losses[] = {{"shifted-gamma", Loss::shifted_gamma},
-                                                   {"reference", Loss::reference},
-                                                   {"smape", Loss::smape},
-                                                   {"relative-l2", Loss::relative_l2},
-                                                   {"shifted-gamma-l2", Loss::shifted_gamma_l2},
-                                                   {"shifted-gamma-bands", Loss::shifted_gamma_bands}};
     for (const auto& [name, loss] : losses)
         if (o.loss == name) return loss;
-    throw Error(
-        ErrorKind::usage,
-        fmt::format("is \"{}\"; expected shifted-gamma, shifted-gamma-l2, shifted-gamma-bands, reference, smape or relative-l2", o.loss),
-        "--loss");
+    throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected {}", o.loss, loss_names()), "--loss");
 }
 
 /// "PIXELS:CODES".
@@ -161,9 +167,7 @@ void add_train_command(CLI::App& app) {
         ->type_name("constant|cosine")
         ->group("Training");
     c->add_option("--clip-norm", t.step.clip_norm, "Greatest norm of a gradient; 0: not clipped [0]")->group("Training");
-    c->add_option(
-         "--loss", o->loss,
-         "What training makes small: shifted-gamma, shifted-gamma-l2, shifted-gamma-bands, reference, smape or relative-l2 [shifted-gamma]")
+    c->add_option("--loss", o->loss, "What training makes small: " + loss_names() + " [shifted-gamma]")
         ->type_name("LOSS")
         ->group("Training");
     c->add_option("--target", o->target, "The reference, or another noisy frame of the view [reference]")

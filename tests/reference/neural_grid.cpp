@@ -156,6 +156,17 @@ Plane by_guide(const Grid& grid, const GridImage& image, const Level& l, const s
 
 constexpr double gamma = 0.454545;
 
+/// (v + 0.01)^gamma - 0.01^gamma, a straight line below 0, and its slope.
+struct Shifted {
+    double value, slope;
+};
+
+Shifted shifted(double v) {
+    const double low = std::pow(0.01, gamma), steep = gamma * std::pow(0.01, gamma - 1);
+    if (v < 0) return {steep * v, steep};
+    return {std::pow(v + 0.01, gamma) - low, gamma * std::pow(v + 0.01, gamma - 1)};
+}
+
 /// Value and slope of the loss of one colour, and which smooth branch it lies on.
 struct LossValue {
     double value, slope;
@@ -166,9 +177,7 @@ int sign(double v) { return (v > 0) - (v < 0); }
 
 LossValue loss_of(GridLoss loss, double out, double target) {
     if (loss == GridLoss::shifted_gamma || loss == GridLoss::shifted_gamma_l2 || loss == GridLoss::shifted_gamma_bands) {
-        const double low = std::pow(0.01, gamma), steep = gamma * std::pow(0.01, gamma - 1);
-        const auto t = [&](double v) { return v >= 0 ? std::pow(v + 0.01, gamma) - low : steep * v; };
-        const double e = t(out) - t(target), slope = out >= 0 ? gamma * std::pow(out + 0.01, gamma - 1) : steep;
+        const double e = shifted(out).value - shifted(target).value, slope = shifted(out).slope;
         if (loss != GridLoss::shifted_gamma) return {e * e, 2 * e * slope, out >= 0};
         return {std::abs(e), sign(e) * slope, 2 * sign(e) + (out >= 0)};
     }
@@ -189,17 +198,14 @@ LossValue loss_of(GridLoss loss, double out, double target) {
 /// What loss `shifted_gamma_bands` adds: 4 b^2, b the mean of a block of 8x8 errors about the mean of the 32x32 around it, as a function of
 /// each pixel's colour. As the means of e cover every pixel once, d/de of the sum of 4 b^2 is 8 b.
 std::vector<LossValue> band_losses(const std::vector<double>& result, const std::vector<double>& target, int width, int height) {
-    std::vector<LossValue> errors, out(result.size());
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        const LossValue v = loss_of(GridLoss::shifted_gamma, result[i], target[i]);
-        errors.push_back({v.value * (v.slope < 0 ? -1 : 1), std::abs(v.slope), 0});
-    }
+    std::vector<double> errors;
+    std::vector<LossValue> out(result.size());
+    for (std::size_t i = 0; i < result.size(); ++i) errors.push_back(shifted(result[i]).value - shifted(target[i]).value);
     const auto mean = [&](int x, int y, int edge, int c) { // of the block of this edge around the pixel
         double sum = 0;
         int count = 0;
         for (int j = y / edge * edge; j < std::min(height, y / edge * edge + edge); ++j)
-            for (int i = x / edge * edge; i < std::min(width, x / edge * edge + edge); ++i, ++count)
-                sum += errors[3 * (j * width + i) + c].value;
+            for (int i = x / edge * edge; i < std::min(width, x / edge * edge + edge); ++i, ++count) sum += errors[3 * (j * width + i) + c];
         return sum / count;
     };
     for (int y = 0; y < height; ++y)
@@ -207,7 +213,7 @@ std::vector<LossValue> band_losses(const std::vector<double>& result, const std:
             for (int c = 0; c < 3; ++c) {
                 const int i = 3 * (y * width + x) + c;
                 const double band = mean(x, y, 8, c) - mean(x, y, 32, c);
-                out[i] = {4 * band * band, 8 * band * errors[i].slope, 0};
+                out[i] = {4 * band * band, 8 * band * shifted(result[i]).slope, 0};
             }
     return out;
 }
