@@ -17,9 +17,7 @@ struct Region {
     friend bool operator!=(const Region& a, const Region& b) { return !(a == b); }
 };
 
-/// Channels are planar float32, row 0 on top, width*height values each, named as in DESIGN.md section 4 "Frames":
-/// R G B A (linear, premultiplied), albedo.R ..., normal.X ..., depth.Z, opacity.A, depth.deviation, depth.half, variance.R ...,
-/// background.R ...
+/// Channels are planar float32, row 0 on top, width*height values each; their names are in host/README.md, "Frames".
 struct Frame {
     /// What a file says beside its pixels in another type than text, kept for the next file: the bytes of the value as OpenEXR writes them.
     struct Attribute {

@@ -1,4 +1,4 @@
-// Splats pixels into a bilateral grid with tent weights, the tent filter with it (SPEC.md sections 5 and 12). A work-item gathers CLVR_BINS cells of one
+// Splats pixels into a bilateral grid with tent weights, which are its filter, too (kernels/denoise/README.md, "Splat"). A work-item gathers CLVR_BINS cells of one
 // grid column from the four blocks of pixels around it, in the order 00 01 10 11, each by rows: the same sums for every shape, no atomics. Cells
 // and weights are found for CLVR_WIDTH pixels at once. On PoCL a whole column a work-item is fastest, on an H100 eight cells (1.7 x as fast as one): neighbouring
 // work-items then read the same pixels and write neighbouring cells. Global: x = columns * ceil(depth / CLVR_BINS), y = rows, z = images.

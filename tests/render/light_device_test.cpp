@@ -265,7 +265,7 @@ TEST_F(Lights, KeyIsAUniformDisc) {
     for (int i = 0; i < 4; ++i) EXPECT_EQ(met.radiance[i].x > 1.0f, i < 2) << i;
 }
 
-/// DESIGN: a white Lambert surface that faces the key under the default light has radiance 1; no other one more.
+/// A white Lambert surface that faces the key under the default light has radiance 1; no other one has more (host/README.md, "Lights").
 TEST_F(Lights, DefaultLightIsScaledToOne) {
     const auto stage = stage_of(sky_scene(1));
     const Lit sampled = samples(*stage, sample_light, 1 << 20);

@@ -1,4 +1,4 @@
-// Models to and from safetensors files (DESIGN.md "Model file").
+// Models to and from safetensors files (host/README.md, "Model files").
 #pragma once
 #include "host/denoise/model.hpp"
 #include "host/io/model/safetensors.hpp"
