@@ -33,7 +33,7 @@ struct Options {
 
 bool is_plan(const std::string& path) { return fs::path(path).filename() == "pairs.json"; }
 
-/// What the command writes in a folder, of what is there: the plan (unless one is gone on with) and frames.
+/// The files in the folder that the command may overwrite: its frames, and the plan unless an earlier one is continued.
 std::vector<std::string> written_in(const std::string& folder, bool goes_on) {
     std::vector<std::string> files;
     if (!goes_on) files.push_back((fs::path(folder) / "pairs.json").string());

@@ -92,7 +92,7 @@ bool may_pass(CURLcode code, long answer) {
     }
 }
 
-/// One transfer that appends to the part. Returns whether to try again; throws when that is in vain.
+/// One transfer that appends to the part. Returns whether to try again; throws when another try cannot help.
 bool transfer(const Download& what, const std::string& part, const std::function<void(std::uint64_t)>& progress,
               const std::atomic<bool>* cancelled, std::string& why) {
     const std::uint64_t begin = size_of(part);

@@ -54,8 +54,9 @@ Model default_settings();
 /// Sizes the tensors and draws them as the reference does: Glorot uniform kernels, zero biases. The same bits for a seed on every machine.
 void initialise(Model& model, std::uint64_t seed);
 
-/// Makes the model take known light off before its grids, by shares that vary over cells of 32 pixels, and read it as three more channels,
-/// whose weights are 0: before it is trained on, its guides are what they were. A model that does so already only gets the cells.
+/// Makes the model subtract the known light before its grids (with shares that vary over cells of 32 pixels) and read it as three more
+/// channels. Their weights begin at 0, so until the model is trained further its guides are what they were. A model that does this already
+/// only gets the cells.
 void add_known_light(Model& model);
 
 /// Throws Error{input} naming the first thing that is wrong: no channels, unknown or doubled ones, sizes out of range (channels 1..64,

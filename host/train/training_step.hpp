@@ -60,7 +60,7 @@ public:
     /// One step at the given learning rate over any number of crops up to `batch` (the mean is over those given). One device alone only
     /// enqueues it: the loss comes later.
     void step(const std::vector<Crop>& crops, double learning_rate);
-    /// The mean loss of each step since the last call, in order; waits for them. NaN where it was.
+    /// The mean loss of each step since the last call, in order; NaN where it was NaN. Waits for the steps.
     std::vector<double> take_losses();
     /// The loss and gradient (order of Model::flat) of crops without a step.
     double gradient(const std::vector<Crop>& crops, std::vector<float>& gradient);

@@ -12,7 +12,7 @@
 namespace clvr {
 namespace {
 
-/// Which bricks hold an interpolation base that a visible cell can ask for: its own, with a reach of one voxel all around.
+/// The bricks that a visible cell can read: those that hold its interpolation bases, or bases one voxel further in any direction.
 std::vector<char> needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout) {
     std::vector<char> needed(layout.offset.size());
     const auto bricks_of_cell = [&](int cell, int axis) {
@@ -37,7 +37,7 @@ std::vector<char> needed_bricks(const MajorantGrid& grid, const std::vector<floa
     return needed;
 }
 
-/// Deals the stored bricks, in their order, to pools of at most `capacity` voxels; returns how many pools that takes.
+/// Puts the stored bricks, in their order, into pools of at most `capacity` voxels; returns how many pools that takes.
 std::size_t deal(BrickLayout& layout, std::size_t capacity, std::size_t bytes_per_voxel) {
     layout.pool_bytes.assign(1, 0);
     std::size_t filled = 0;
@@ -134,7 +134,7 @@ BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::v
     const std::size_t used = deal(layout, capacity, bytes);
     if (used > 8) throw too_big();
     while (layout.pools < static_cast<int>(used)) layout.pools *= 2;
-    // Dealt again evenly: a pool that closes holds more than total / pools, so no more pools are taken.
+    // Once more, evenly: a pool that is closed holds more than total / pools, so no further pool is needed.
     deal(layout, std::min(capacity, total / layout.pools + largest), bytes);
     layout.pool_bytes.resize(layout.pools, 0);
     return layout;
