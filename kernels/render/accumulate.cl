@@ -1,7 +1,7 @@
 // Adds a wave's samples to the pixels' running means and sums of squared deviations, in sample order (Welford 1962). One work-item a pixel.
 #pragma OPENCL FP_CONTRACT OFF
 
-// mean: RGB, alpha; deviation: sum of squared deviations of RGB, 0. `before` samples are already in.
+// mean: RGB, alpha; deviation: sum of squared deviations of RGB, 0. `before` samples are in them already.
 __kernel void accumulate(__global const float4* radiance, __global float4* mean, __global float4* deviation, uint pixels, uint samples, uint before) {
     uint pixel = (uint)get_global_id(0);
     if (pixel >= pixels) return;
