@@ -97,7 +97,7 @@ TEST(FaultyDevices, AllOfThemAreAnError) {
 TEST(FaultyDevices, OtherBitsThanTheOthersAreFoundBeforeTheyMix) {
     if (faulty_devices("delay:1").empty()) GTEST_SKIP() << "the device has no parts";
     std::string line;
-    EXPECT_EQ(refusal_with("result:render/accumulate", 2, &line), ErrorKind::device); // which of the two is wrong, nobody knows
+    EXPECT_EQ(refusal_with("result:render/accumulate", 2, &line), ErrorKind::device); // of two that differ, nobody knows which one is wrong
     EXPECT_THAT(line, ::testing::HasSubstr("compute different pictures"));
 }
 
