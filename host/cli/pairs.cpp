@@ -116,7 +116,7 @@ void pairs(const Options& o) {
 void add_pairs_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("pairs", "Render views around a volume as noisy frames and references, for training and testing");
     auto o = std::make_shared<Options>();
-    c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is gone on with")->type_name("DIR")->group("Output");
+    c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is continued")->type_name("DIR")->group("Output");
     c->add_option("--views", o->views, "Number of views [100]")->group("Pairs");
     c->add_option("--reference-spp", o->reference_spp, "Samples per pixel of the references; 0: none [1024]")->group("Pairs");
     c->add_option("--noisy-frames", o->noisy_frames, "Independent noisy frames of each view [1]")->group("Pairs");

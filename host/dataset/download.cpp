@@ -137,7 +137,7 @@ bool transfer(const Download& what, const std::string& part, const std::function
     // A server that knows no ranges, or whose file is shorter than our part: from the beginning.
     if (begin > 0 && (code == CURLE_RANGE_ERROR || code == CURLE_BAD_DOWNLOAD_RESUME || answer == 416)) {
         fs::remove(part);
-        why = "does not go on with a part";
+        why = "cannot continue a part";
         return true;
     }
     why = code == CURLE_HTTP_RETURNED_ERROR ? fmt::format("answers {}", answer) : message[0] ? message : curl_easy_strerror(code);
