@@ -1,6 +1,6 @@
 // What a folder of pairs holds: pairs.json.
 #pragma once
-#include "host/render/renderer.hpp"
+#include "host/render/session.hpp"
 #include "host/render/view_set.hpp"
 
 #include <cstdint>

@@ -71,15 +71,21 @@ struct BrickLayout {
 /// 1.35 times their voxels (down to an axis of 7).
 int brick_log2_edge(const Int3& dims);
 
-/// Lays out the bricks that are needed when cells with majorant > 0 are visible: those that a sample in such a cell, or a gradient tap one
-/// voxel away, can read. One more voxel all around keeps a position safe that rounding puts on the far side of a cell's border. `log2_edge`
-/// is 3 to 8. Pools are at most `max_pool_bytes` each. Throws Error{memory} when 8 pools do not hold it.
+/// Which bricks of a layout are needed when cells with majorant > 0 are visible: those that a sample in such a cell, or a gradient tap one
+/// voxel away, can read. One more voxel all around keeps a position safe that rounding puts on the far side of a cell's border.
+std::vector<char> needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout);
+
+/// Lays out the needed_bricks. `log2_edge` is 3 to 8. Pools are at most `max_pool_bytes` each. Throws Error{memory} when 8 pools do not
+/// hold it.
 BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
                          std::size_t max_pool_bytes);
 
-/// Copies one pool's bricks out of the voxels, in pieces of at most `piece_bytes`: calls sink(bytes, size, offset_bytes_in_pool) so that
-/// the host never holds a second copy of the volume.
+/// Copies bricks out of the voxels, in pieces of at most `piece_bytes`: calls sink(bytes, size, offset_bytes_in_pool) so that the host
+/// never holds a second copy of the volume. `bricks`: of one pool, in ascending order.
 using PackSink = std::function<void(const unsigned char* bytes, std::size_t size, std::size_t offset)>;
+void pack_bricks(const Voxels& v, const BrickLayout& layout, const std::vector<std::size_t>& bricks, std::size_t piece_bytes,
+                 const PackSink& sink);
+/// All bricks of a pool.
 void pack_pool(const Voxels& v, const BrickLayout& layout, int pool, std::size_t piece_bytes, const PackSink& sink);
 
 /// The box of index positions, inside [-0.5, n-0.5], that holds every voxel whose opacity is above `threshold` with its trilinear

@@ -21,7 +21,7 @@ inline Device& shared_device() {
 
 inline Frame render(const Voxels& v, const Scene& scene, const EnvironmentTables& environment = {}) {
     const PreparedVolume prepared(v);
-    return Renderer({shared_device()}, prepared, scene, environment).render();
+    return clvr::render({shared_device()}, prepared, scene, environment);
 }
 
 /// The demand on closed forms: a relative standard error of at most 0.3 %, and a mean within 4 sigma.
