@@ -1,4 +1,4 @@
-// How much memory of a device clvr holds. Drivers do not say: PoCL grants ten times what there is (FACTS.md).
+// How much memory of a device clvr holds. Drivers do not say: PoCL grants ten times what there is (runtime/README.md, "Quirks").
 #pragma once
 #include <cstddef>
 #include <memory>

@@ -48,7 +48,7 @@ void run_small_kernel(const cl::Device& handle) {
     queue.enqueueReadBuffer(buffer, CL_TRUE, 0, sizeof values, values);
 }
 
-/// A device of each kind, as devices of a kind share what may go wrong.
+/// Tries one device of each kind, as devices of a kind fail alike.
 void try_platform(const cl::Platform& platform) {
     std::vector<cl::Device> devices;
     platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
@@ -68,7 +68,7 @@ void send(int pipe, const std::string& line) { [[maybe_unused]] const ssize_t se
     ::alarm(patience_s);
     ::dup2(said, STDOUT_FILENO);
     ::dup2(said, STDERR_FILENO);
-    if (!cache.empty()) ::setenv("POCL_CACHE_DIR", cache.c_str(), 1); // an empty one: what is kept there would hide a missing linker
+    if (!cache.empty()) ::setenv("POCL_CACHE_DIR", cache.c_str(), 1); // an empty folder, as kept kernels would hide a missing linker
     try {
         std::vector<cl::Platform> platforms;
         try {
@@ -94,11 +94,11 @@ void send(int pipe, const std::string& line) { [[maybe_unused]] const ssize_t se
     ::_exit(0); // no driver's destructors
 }
 
-/// Both pipes to their ends.
+/// Reads both pipes to their ends.
 void read_both(int answers, int said, std::string& answered, std::string& spoken) {
     pollfd ends[] = {{answers, POLLIN, 0}, {said, POLLIN, 0}};
     std::string* const to[] = {&answered, &spoken};
-    while (ends[0].fd >= 0) { // what a driver leaves running may keep the other one open
+    while (ends[0].fd >= 0) { // a process that a driver leaves running may keep the other pipe open
         if (::poll(ends, 2, -1) < 0 && errno != EINTR) return;
         for (int k = 0; k < 2; ++k) {
             if (ends[k].fd < 0 || ends[k].revents == 0) continue;
@@ -126,7 +126,7 @@ int try_from(int first, const std::string& cache, Trial& trial) {
     int answers[2], said[2];
     if (::pipe2(answers, O_CLOEXEC) != 0 || ::pipe2(said, O_CLOEXEC) != 0) {
         trial.complete = false;
-        return -1; // the little that stays open does not matter any more
+        return -1; // few descriptors stay open, and no further child needs them
     }
     const pid_t child = ::fork();
     if (child == 0) run_child(first, answers[1], said[1], cache);
@@ -134,7 +134,7 @@ int try_from(int first, const std::string& cache, Trial& trial) {
     std::string answered, spoken;
     if (child > 0) read_both(answers[0], said[0], answered, spoken);
     ::close(answers[0]), ::close(said[0]);
-    if (child < 0) { // no process to be had: nothing is known
+    if (child < 0) { // no process can be started: nothing is known
         trial.complete = false;
         return -1;
     }
@@ -143,7 +143,7 @@ int try_from(int first, const std::string& cache, Trial& trial) {
     }
     const auto add = [&](int platform, const std::string& how) {
         if (lacks_room(spoken))
-            trial.complete = false; // where the trial wrote: clvr's own kernels go elsewhere
+            trial.complete = false; // only the trial's own folder was full: clvr's kernels go elsewhere
         else
             trial.problems[platform] = driver_problem(spoken, how);
     };

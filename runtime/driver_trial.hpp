@@ -1,4 +1,4 @@
-// Drivers are tried in a child process before clvr's own process builds anything with them: one that cannot link, or crashes, ends the
+// Drivers are tried in a child process before clvr itself builds anything with them: a driver that cannot link, or crashes, ends only the
 // child.
 #pragma once
 #include <map>
@@ -6,7 +6,7 @@
 
 namespace clvr {
 
-/// What is wrong with drivers: by the platform's place in the loader's list, or -1 where none can even be listed. A line each, without the
+/// What is wrong with drivers, by the platform's place in the loader's list; -1 where not even a list can be had. A line each, without the
 /// driver's name: "cannot link kernels: there is no linker (ld) in PATH", "crashed (Aborted)".
 using DriverProblems = std::map<int, std::string>;
 

@@ -5,7 +5,7 @@
 
 namespace clvr {
 
-/// What went wrong, as the program's exit code (DESIGN.md section 4 "Errors").
+/// What went wrong, as the program's exit code (host/README.md, "Errors").
 enum class ErrorKind : int { usage = 2, input = 3, device = 4, memory = 5, internal = 6, interrupted = 130 };
 
 /// One line that says what was wrong, what was expected and what to try; `where` names the file, option, device or OpenCL call (may be

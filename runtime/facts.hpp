@@ -10,7 +10,7 @@ namespace clvr {
 
 enum class DeviceType { cpu, gpu, accelerator };
 
-/// What a device says of itself, read once. Sizes in bytes.
+/// What a device says about itself, read once. Sizes in bytes.
 struct DeviceFacts {
     cl::Device handle;
     int index = -1;      ///< position in the list of all devices, platforms in order; what `--device N` means

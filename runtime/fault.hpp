@@ -3,8 +3,8 @@
 //
 //     CLVR_FAULT=KIND:VALUE[@DEVICE[.PART]][,...]
 //
-//     launch:N       the N-th launch (from 1) fails as on a device that is lost, and so does every later call
-//     alloc:N        the N-th allocation fails for lack of memory; the others do not
+//     launch:N       the N-th launch (from 1) fails as if the device were lost, and so does every later call
+//     alloc:N        the N-th allocation alone fails for lack of memory
 //     build:STAGE    kernels/STAGE.cl does not build (STAGE as render/shade)
 //     result:STAGE   what is read next after a launch of kernels/STAGE.cl has a wrong bit
 //     delay:MS       every launch takes MS milliseconds longer
@@ -45,7 +45,7 @@ private:
     bool lost_ = false, spoil_next_ = false;
 };
 
-/// While one lives, devices that this thread opens have no faults but wrong results: for probes, whose calls do not count.
+/// While one lives, devices that this thread opens have only wrong results as faults: for probes, whose launches must not count.
 class ProbeScope {
 public:
     ProbeScope();

@@ -7,8 +7,8 @@
 
 namespace clvr {
 
-/// $XDG_CACHE_HOME/clvr or ~/.cache/clvr, made if need be; what is in it can be made again. Nothing, after one warning in the life of the
-/// process, when it cannot be written.
+/// $XDG_CACHE_HOME/clvr or ~/.cache/clvr, made if needed; its content can be made again at any time. Nothing, after one warning in the life
+/// of the process, when it cannot be written.
 std::optional<std::filesystem::path> cache_folder();
 
 /// $XDG_CONFIG_HOME/clvr or ~/.config/clvr; nothing when neither variable is an absolute path. Not made here.
@@ -20,8 +20,8 @@ bool writable_folder(const std::filesystem::path& folder);
 /// The whole file, or nothing when it cannot be read.
 std::optional<std::string> load_file(const std::filesystem::path& path);
 
-/// Writes beside `path` under a name that no other process or thread uses, then renames: readers see the old file or the new one. False
-/// when that fails, nothing is left then.
+/// Writes beside `path` under a name that nobody else uses, then renames: readers see either the old file or the new one. Returns false
+/// when that fails; then nothing is left behind.
 bool replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 } // namespace clvr

@@ -25,7 +25,7 @@ std::string load(const std::string& library) {
 }
 
 /// Empty when the library is a driver. Loaded in a child process: two drivers with an LLVM each (PoCL, Mesa) abort the process that loads
-/// one of them a second time. A child that ends without a word says nothing against the driver.
+/// one of them a second time. A child that ends without a message is no evidence against the driver.
 std::string why_no_driver(const std::string& library) {
     int ends[2];
     if (pipe(ends) != 0) return "";

@@ -1,4 +1,4 @@
-// Program binaries on disk, for drivers that keep none of their own. An entry is checked in full before a driver sees it: some abort on
+// Program binaries on disk, for drivers that keep none themselves. An entry is checked in full before a driver sees it: some abort on
 // broken ones.
 #pragma once
 #include "runtime/facts.hpp"

@@ -19,9 +19,9 @@ namespace {
 
 std::string program;
 pid_t process = 0;
-bool ended = false; // by itself
+bool ended = false; // in the usual way
 
-/// Somebody else called exit() or abort(): a driver.
+/// For when a driver called exit() or abort().
 [[noreturn]] void say_what_the_driver_did(const char* how) {
     const std::string cache = quirks::pocl_cache_problem();
     std::fflush(stdout);
@@ -67,7 +67,7 @@ int run_program(const std::string& name, int (*body)(int argc, char** argv), int
     try {
         code = body(argc, argv);
     } catch (const Error& error) {
-        standard_output_problem(); // results before the error, should both go to one terminal
+        standard_output_problem(); // prints results first, in case both go to one terminal
         fail(error.line(), error.kind());
     } catch (const std::bad_alloc&) {
         fail("out of memory; try something smaller", ErrorKind::memory);

@@ -34,7 +34,7 @@ bool oclgrind_ignores_line_directives(const std::string& platform);
 bool oclgrind_knows_no_noalias_scopes(const std::string& platform);
 
 /// Some drivers give commands an end before their start (https://github.com/darktable-org/darktable/pull/21122), rusticl 22.3 one
-/// nanosecond after it: the time in ms between two stamps, 0 when they are in the wrong order. Whoever chooses by time measures with the
+/// nanosecond after it. The time in ms between two stamps; 0 when they are in the wrong order. What chooses by time measures with the
 /// host's clock (speed.cpp).
 double milliseconds_though_stamps_run_backwards(std::uint64_t start_ns, std::uint64_t end_ns);
 

@@ -37,11 +37,11 @@ void require_devices(const std::vector<PlatformFacts>& platforms) {
     throw Error(ErrorKind::device, fmt::format("no OpenCL platform here has a device ({}); {}", names, advice));
 }
 
-/// The rule below all wishes.
+/// The choice where nobody asked for a device.
 Choice by_default(const std::vector<DeviceFacts>& devices, const Fastest& fastest) {
     const std::vector<std::size_t> candidates = default_candidates(devices);
     if (candidates.empty()) {
-        for (const DeviceFacts& device : devices) // what can be mended comes before what is missing
+        for (const DeviceFacts& device : devices) // a driver that can be repaired is the better advice
             if (!device.driver_problem.empty()) throw Error(ErrorKind::device, device.driver_problem, device.name);
         throw Error(
             ErrorKind::device,

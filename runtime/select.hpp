@@ -1,4 +1,4 @@
-// Which device to use, and why (DESIGN.md section 4, "Device selector").
+// Which device to use, and why (runtime/README.md, "Device selector").
 #pragma once
 #include "runtime/facts.hpp"
 #include "runtime/remembered.hpp"

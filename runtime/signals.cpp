@@ -20,7 +20,7 @@ std::atomic<bool> interrupted{false}, polled{false};
     ::_exit(130);
 }
 
-/// A thread of its own may call what a signal handler must not.
+/// A thread waits for the signals, as a signal handler must not call what is needed here.
 [[noreturn]] void wait_for_signals(const sigset_t& signals, const std::string& program) {
     for (;;) {
         int signal = 0;
@@ -43,7 +43,7 @@ void watch_signals(const std::string& program) {
     pthread_sigmask(SIG_BLOCK, &signals, nullptr); // all threads that begin later inherit it
     try {
         std::thread([signals, program] { wait_for_signals(signals, program); }).detach();
-    } catch (const std::system_error&) { // no thread to be had: they end the program as they do any other
+    } catch (const std::system_error&) { // no thread can be started: the signals end the program in the usual way
         pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     }
 }

@@ -5,12 +5,13 @@
 
 namespace clvr {
 
-/// From now on these signals are watched, but those that whoever started the program has it ignore (nohup): Temporary files and folders are
-/// removed, one line is said, exit code 130. First in main, before any thread begins; again in a child after fork().
+/// From now on these signals are watched, except those that the program was told to ignore when it was started (nohup). A signal removes
+/// all Temporary files and folders, prints one line and ends the program with exit code 130. To be called first in main, before any thread
+/// begins; again in a child after fork().
 void watch_signals(const std::string& program);
 
-/// From now on the first signal sets the flag instead, so that what was finished can be saved; a second SIGINT or SIGTERM ends at once (a
-/// second SIGHUP does not: shells and the kernel both send one). Returns the flag.
+/// From now on the first signal only sets the flag, so that what was finished can be saved; a second SIGINT or SIGTERM ends the program at
+/// once (a second SIGHUP does not, as shells and the kernel both send one). Returns the flag.
 const std::atomic<bool>& catch_interrupts();
 
 } // namespace clvr

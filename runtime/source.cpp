@@ -86,7 +86,7 @@ private:
         seen_[path] = conditional ? Seen::conditionally : Seen::always;
     }
 
-    /// False when the directive is to stay as it is.
+    /// False when the directive is to stay for the compiler.
     bool included(const std::string& from, const std::string& name, int number, bool conditional) {
         for (const fs::path& candidate : {fs::path(from).parent_path() / name, fs::path(name)}) {
             const std::string path = candidate.lexically_normal().generic_string();

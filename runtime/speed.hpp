@@ -6,7 +6,8 @@
 
 namespace clvr {
 
-/// Milliseconds for a fixed small piece of work (kernels/probe/speed.cl), at the better of widths 1 and 16. Throws what the device throws.
+/// Milliseconds for a fixed small piece of work (kernels/probe/speed.cl), at the better of the widths 1 and 16. Throws what opening or
+/// using the device throws.
 double probe_speed_ms(const DeviceFacts& device);
 
 /// The position in `devices` of the fastest of the `candidates` (positions, too) that pass the trust probe. The answer is stored per list

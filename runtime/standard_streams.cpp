@@ -16,7 +16,7 @@ void prepare_standard_streams() {
     std::signal(SIGXFSZ, SIG_IGN);
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(fd, F_GETFD) < 0 && errno == EBADF) {
-            // Standard output for reading only: writing fails, so that nobody takes lost results for printed ones.
+            // Standard output is opened for reading only: writing fails, so that lost results are noticed.
             [[maybe_unused]] const int opened = ::open("/dev/null", fd == STDOUT_FILENO ? O_RDONLY : O_RDWR);
         }
 }
@@ -26,7 +26,7 @@ std::string standard_output_problem() {
     errno = 0;
     std::cout.flush();
     if (std::fflush(stdout) == 0 && std::cout && !failed_before) return {};
-    if (errno == 0 && failed_before) { // what could not be written is gone: ask once more for the reason
+    if (errno == 0 && failed_before) { // the failed output is lost: write once more to learn the reason
         std::clearerr(stdout);
         if (std::fputc('\n', stdout) != EOF && std::fflush(stdout) == 0) return "some of it is lost";
     }

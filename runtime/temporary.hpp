@@ -4,9 +4,9 @@
 
 namespace clvr {
 
-/// A file or folder that is removed, with all that is in it, on destruction and by remove_temporaries(), unless it was given up before.
-/// Where the file system has locks, it is locked as long as its process lives, so that remove_stale() knows those of processes that were
-/// killed.
+/// A file or folder that is removed, with everything in it, on destruction and by remove_temporaries(), unless it was given up before.
+/// Where the file system has locks, it is locked as long as its process lives: so remove_stale() can tell which ones killed processes left
+/// behind.
 class Temporary {
 public:
     Temporary() = default;
@@ -32,11 +32,11 @@ private:
     void swap(Temporary& other) noexcept;
 };
 
-/// Removes every Temporary; from then on no new one can be made. For the end of the process.
+/// Removes every Temporary; after that no new one can be made. Called at the end of the process.
 void remove_temporaries() noexcept;
 
-/// Removes what killed processes left in the folder (what Temporary::file_in or folder_in, with this purpose, makes there). Once a folder
-/// in the life of the process; what cannot be removed is left.
+/// Removes what killed processes left in the folder (files or folders as Temporary::file_in, or folder_in with this purpose, makes them).
+/// Works once for each folder in the life of the process. What cannot be removed is left there.
 void remove_stale_files(const std::string& folder);
 void remove_stale_folders(const std::string& folder, const std::string& purpose);
 

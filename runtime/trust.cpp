@@ -176,7 +176,7 @@ Trust probe_trust(const DeviceFacts& facts) {
 
 namespace {
 
-/// A device with wrong results put in is what it is by CLVR_FAULT alone: nothing is stored, nothing believed that was.
+/// For a device that CLVR_FAULT makes compute wrong results, nothing is stored, and nothing that was stored is believed.
 bool has_faulty_results(const DeviceFacts& device) {
     const auto faults = Faults::of(device);
     return faults && faults->spoils_results();
@@ -189,7 +189,7 @@ std::optional<Trust> stored_trust(const DeviceFacts& device) { return load(key_o
 Trust trust_of(const DeviceFacts& device) {
     if (has_faulty_results(device)) return probe_trust(device);
     static std::mutex mutex;
-    static std::map<std::string, Trust> known; // of this process, for when nothing can be stored
+    static std::map<std::string, Trust> known; // by this process, in case nothing can be stored
     const std::lock_guard lock(mutex);
     const std::string key = key_of(device);
     auto found = known.find(key);

@@ -1,4 +1,5 @@
-// Does a device compute as IEEE 754 says? Drivers' flags do not tell (FACTS.md), so clvr compares bits once per device and driver.
+// Does a device compute as IEEE 754 says? Drivers' flags do not tell, so clvr compares bits once per device and driver
+// (runtime/README.md, "Trust").
 #pragma once
 #include "runtime/facts.hpp"
 

@@ -29,8 +29,8 @@ Tuning parse_tuning(const std::string& text, const std::string& where);
 /// Where the measured tuning of this device and driver is kept, there or not; nothing without a configuration folder.
 std::optional<std::filesystem::path> tuning_path(const DeviceFacts& device);
 
-/// The measured tuning; nothing where none is kept. A file that cannot be read or understood is left out with a warning (once a process):
-/// a tuning is worth no failed run.
+/// The measured tuning; nothing where none is kept. A file that cannot be read or understood is ignored with a warning (once per process):
+/// no run should fail because of a tuning.
 std::optional<Tuning> measured_tuning(const DeviceFacts& device);
 
 /// Keeps a measured tuning for the next runs. Throws Error{input} naming the file when it cannot be written.

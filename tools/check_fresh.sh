@@ -4,7 +4,7 @@
 # Usage: check_fresh.sh [SUITE:COMPILER...]
 #   bookworm:g++ bookworm:clang++ trixie:g++ trixie:clang++   what is tried (default: all)
 # The bare systems live in ${CLVR_DEBIAN:-/tmp/clvr-debian}-SUITE: made when absent, never changed. The copy in use has .used after it. tools/test.sh runs
-# with g++, whose compiler is Debian's; with clang++ the picture is enough, which must have the same bits.
+# with g++ only, Debian's own compiler; with clang++ only the picture is made, which must have the same bits.
 set -euo pipefail
 source "$(dirname "$0")/bare_debian.sh"
 repository=$(cd "$(dirname "$0")/.." && pwd)

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Kills render, pairs, train and downloads at random moments, the same ones in every run: nothing half-written may have a final name, and the
-# next run begins cleanly or goes on. Usage: check_kills.sh [KILLS] [FOLDER]
+# next run begins cleanly or continues. Usage: check_kills.sh [KILLS] [FOLDER]
 #   KILLS   in all, a quarter each (default 200)
 #   FOLDER  with the built tests (default build/release, made by `cmake --preset release -DCLVR_TESTS=ON`)
 set -euo pipefail

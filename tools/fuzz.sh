@@ -31,7 +31,7 @@ fuzz() {
     local target=$1
     ln -sf "$program" "$run/fuzz_$target"
     mkdir -p "$run/corpus/$target" "$run/findings/$target"
-    # 512 MiB at once are more than what any reader needs for 32 KiB of input. Of the 30 s a busy machine may let a child wait for 15.
+    # No reader needs 512 MiB at once for 32 KiB of input. 30 s, because on a busy machine a child may wait for 15 s.
     "$run/fuzz_$target" -max_total_time="$seconds" -max_len=32768 -rss_limit_mb=2048 -malloc_limit_mb=512 -timeout=30 -print_final_stats=1 \
         -dict="$run/samples/$target.dict" -artifact_prefix="$run/findings/$target/" "$run/corpus/$target" "$run/samples/$target" \
         >"$run/$target.log" 2>&1 || echo "$target" >>"$TMPDIR/found"

@@ -7,7 +7,7 @@
 # CLVR_LEAVE_OUT names kinds of volumes (the list below) not to train on, as "machine rock", to cross-validate. The models go to
 # DIR/without-machine-rock, test pairs of those kinds to DIR/machine-test and DIR/rock-test for `clvr eval`; all other pairs in DIR are shared.
 # head, head-closed and skull have the same bones: leave them out together.
-# Goes on where it was interrupted. On two cores: about 3 hours for the 292 views of default (13 to 50 s each), 40 minutes for its training; on a
+# Continues where it was interrupted. On two cores: about 3 hours for the 292 views of default (13 to 50 s each), 40 minutes for its training; on a
 # large GPU minutes.
 set -euo pipefail
 folder=$1
@@ -93,7 +93,7 @@ pass() {
     "$clvr" train "${trained[@]}" --validate "$folder/$validated-validation" -o "$model" --patch 128 --batch 8 --patches-per-image 20 --epochs "$epochs" \
         --lr "$rate" --schedule cosine --seed "$seed" "$@"
 }
-# A coarse level averages more of few samples, and coarser codes do: 0.2 to 0.3 dB more at 1 sample per pixel than 4:4,8:8,16:16.
+# A coarser level and coarser codes average over more samples: 0.2 to 0.3 dB more at 1 sample per pixel than 4:4,8:8,16:16.
 # two_passes MODEL OPTION...: the second one with squared errors
 two_passes() {
     local model=$1

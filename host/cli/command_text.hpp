@@ -6,8 +6,8 @@
 
 namespace clvr {
 
-/// "clvr NAME" with the positional arguments and options that were given, from the line or a configuration file, less those that only say
-/// where results go: -o and --json.
+/// "clvr NAME" with the positional arguments and the options that were given on the line or in a configuration file. -o and --json are left
+/// out: they only say where results go.
 std::string command_text(const CLI::App& command);
 
 } // namespace clvr

@@ -146,8 +146,8 @@ std::string layers_of(const std::vector<std::string>& channels) {
     return layers;
 }
 
-/// The model for the frame: `named`, else the first inside clvr that reads only what the frame has. Adds what it reads and can be made, and
-/// names that in `made`.
+/// The model for the frame: `named`, else the first one inside clvr whose channels the frame has. Channels that the model reads and that
+/// can be made are added to the frame, and named in `made`.
 Model model_for(const Options& o, const std::optional<Model>& named, Frame& frame, std::vector<std::string>& made) {
     const auto keep = [&](const MadeChannels& channels) {
         if (!channels.said.empty()) spdlog::info("{}: {}", o.input, channels.said);

@@ -26,7 +26,7 @@ std::vector<Device> open_devices(const DeviceOptions& o) {
     for (const auto& facts : selection.devices) {
         try {
             devices.push_back(Device::open(facts, o.relaxed));
-        } catch (const Error& error) { // as one that fails later: without it, while there are others
+        } catch (const Error& error) { // left out, as a device that fails later is, while there are others
             if (!is_device_failure(error) || ++refused == selection.devices.size()) throw;
             spdlog::warn("{} is left out: {}", display_name(facts), error.line().substr(0, error.line().find('\n')));
             continue;

@@ -55,7 +55,7 @@ const Dataset* published(const std::string& scene) {
 /// Where the volume comes from: into settings.computed, or the path that is to be read.
 std::string source_of(const Options& o, const Dataset* dataset, ExperimentSettings& s) {
     std::error_code failed;
-    if (!o.volume.empty() && o.fetch) throw Error(ErrorKind::usage, "is given beside --fetch; one says where the volume is", "--volume");
+    if (!o.volume.empty() && o.fetch) throw Error(ErrorKind::usage, "is given with --fetch; leave one of them out", "--volume");
     if (!o.volume.empty()) return fs::absolute(o.volume).string();
     if (o.fetch) {
         if (!dataset || dataset->url.empty())
@@ -104,7 +104,7 @@ ExperimentSettings settings_of(const Options& o) {
     };
     set(s.train.views, o.views), set(s.test.views, o.test_views);
     set(s.train.reference_spp, o.reference_spp), set(s.test.reference_spp, o.test_reference_spp);
-    if (o.epochs && o.steps) throw Error(ErrorKind::usage, "is given beside --epochs; one says how long to train", "--steps");
+    if (o.epochs && o.steps) throw Error(ErrorKind::usage, "is given with --epochs; leave one of them out", "--steps");
     if (o.epochs) s.training.steps = 0;
     set(s.training.epochs, o.epochs), set(s.training.steps, o.steps), set(s.training.step.batch, o.batch);
     set(s.training.step.patch, o.patch), set(s.training.learning_rate, o.learning_rate);

@@ -8,7 +8,7 @@ namespace clvr {
 
 namespace {
 
-/// By option and name: where an option lay before, another program's may lie now.
+/// By the option's address and name: once a program is gone, an option of another one may have the same address.
 using Declared = std::map<std::pair<const CLI::Option*, std::string>, FileOption>;
 
 Declared& declared() {

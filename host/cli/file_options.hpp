@@ -9,23 +9,23 @@
 
 namespace clvr {
 
-/// The files that a command writes where an option has this value: the value itself, unless told otherwise.
+/// The files that a command writes for a value of this option: the value itself, unless told otherwise.
 using WrittenFiles = std::function<std::vector<std::string>(const std::string& value)>;
 
 /// The values of these options are files or folders that the command reads.
 void reads_files(CLI::App& command, const std::vector<std::string>& options);
-/// The command writes files by the values of this option.
+/// The command writes files that the values of this option name.
 void writes_files(CLI::App& command, const std::string& option, WrittenFiles files = {});
 
-/// What was declared of an option.
+/// What reads_files and writes_files declared for an option.
 struct FileOption {
     bool read = false, written = false;
     WrittenFiles files;
 };
 FileOption file_option(const CLI::Option* option);
 
-/// Of the options that were given on this command line: throws Error{usage} where a file that is written is one that is read, or written
-/// by another option, too (host/io/file_roles.hpp). For the program's parse_complete_callback, which comes before the commands'.
+/// Checks the options that were given on this command line: throws Error{usage} where a file is written that is also read, or that another
+/// option writes, too (host/io/file_roles.hpp). Made for the program's parse_complete_callback, which runs before the commands' callbacks.
 void check_files(const CLI::App& program);
 
 } // namespace clvr

@@ -5,8 +5,8 @@
 
 namespace clvr {
 
-/// The name that differs least from the word, where it begins with the word or takes at most two changes (one in words of one or two
-/// letters): a letter more, less, or another, or two swapped. Empty: none is near.
+/// The name closest to the word: one that begins with the word, or that takes at most two changes (one for words of one or two letters). A
+/// change is a letter more, a letter less, another letter, or two letters swapped. Empty where no name is close.
 std::string nearest_name(const std::string& word, const std::vector<std::string>& names);
 
 } // namespace clvr

@@ -33,7 +33,7 @@ struct Options {
 
 bool is_plan(const std::string& path) { return fs::path(path).filename() == "pairs.json"; }
 
-/// What the command writes in a folder, of what is there: the plan (unless one is gone on with) and frames.
+/// The files in the folder that the command may overwrite: its frames, and the plan unless an earlier one is continued.
 std::vector<std::string> written_in(const std::string& folder, bool goes_on) {
     std::vector<std::string> files;
     if (!goes_on) files.push_back((fs::path(folder) / "pairs.json").string());
@@ -116,7 +116,7 @@ void pairs(const Options& o) {
 void add_pairs_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("pairs", "Render views around a volume as noisy frames and references, for training and testing");
     auto o = std::make_shared<Options>();
-    c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is gone on with")->type_name("DIR")->group("Output");
+    c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is continued")->type_name("DIR")->group("Output");
     c->add_option("--views", o->views, "Number of views [100]")->group("Pairs");
     c->add_option("--reference-spp", o->reference_spp, "Samples per pixel of the references; 0: none [1024]")->group("Pairs");
     c->add_option("--noisy-frames", o->noisy_frames, "Independent noisy frames of each view [1]")->group("Pairs");

@@ -14,7 +14,7 @@
 #include "host/io/scene/scene_file.hpp"
 #include "host/io/scene/scene_inputs.hpp"
 #include "host/render/params.hpp"
-#include "host/render/renderer.hpp"
+#include "host/render/session.hpp"
 #include "runtime/embedded.hpp"
 #include "runtime/sha256.hpp"
 #include "runtime/signals.hpp"
@@ -75,9 +75,12 @@ private:
 };
 
 /// Renders one view and writes it to all outputs. Returns the samples reached.
-int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene, const RenderOptions& o,
+int render_view(RenderSession& session, FrameDenoiser* denoiser, const Scene& scene, const RenderOptions& o,
                 const std::atomic<bool>& interrupted, PictureOutputs& pictures, const std::vector<std::string>& outputs,
                 const std::string& label) {
+    const bool any_exr = std::any_of(outputs.begin(), outputs.end(), is_exr_path);
+    Scene wanted = scene;
+    wanted.features = denoiser || (scene.features && any_exr); // a PNG alone does not need them
     Frame frame;
     {
         ProgressBar bar(label, false);
@@ -85,19 +88,19 @@ int render_view(Renderer& renderer, FrameDenoiser* denoiser, const Scene& scene,
         RenderControl control;
         control.seconds = o.seconds;
         control.cancelled = &interrupted;
-        control.light = std::any_of(outputs.begin(), outputs.end(), is_exr_path) || (denoiser && denoiser->wants_light());
+        control.light = any_exr || (denoiser && denoiser->wants_light());
         std::atomic<int> reached{0};
         control.progress = [&](const RenderProgress& p) {
             if (reached.exchange(p.samples) < p.samples) spdlog::debug("{} samples per pixel done", p.samples);
             const double share = o.seconds > 0 ? std::min(1.0, bar.seconds() / o.seconds) : p.done;
             bar.update(share, fmt::format("{} spp, {:.2f} Mpaths/s", p.samples, p.done * paths / bar.seconds() * 1e-6));
         };
-        frame = renderer.render(control);
+        frame = clvr::render(session, wanted, control);
     }
     Scene made = scene;
     made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
-    if (denoiser) frame = denoiser->denoise(frame, renderer.devices());
-    add_provenance(frame, made, renderer.devices());
+    if (denoiser) frame = denoiser->denoise(frame, session.devices());
+    add_provenance(frame, made, session.devices());
     pictures.write(frame, {made.tonemap, made.exposure}, outputs);
     return made.spp;
 }
@@ -151,11 +154,8 @@ void render(RenderOptions o) {
     if (!scene.transfer) scene.transfer = automatic_transfer_function(volume.voxels, stored_histogram(volume.voxels));
     scene.extinction = resolved_extinction(scene, volume.voxels);
 
-    Scene wanted = scene;
-    wanted.features &= any_exr; // a PNG alone does not need them
-    wanted.features |= o.denoise;
-    Renderer renderer(devices, volume, wanted, environment, o.turntable > 0);
-    for (const auto& w : renderer.warnings()) spdlog::warn("{}", w);
+    RenderSession session(devices, volume, scene, environment, o.turntable > 0);
+    for (const auto& w : session.warnings()) spdlog::warn("{}", w);
 
     std::optional<FrameDenoiser> denoiser;
     if (model) denoiser.emplace(*model);
@@ -167,9 +167,9 @@ void render(RenderOptions o) {
             for (auto& path : outputs) path = view_path(path, view);
             scene.camera.azimuth = azimuth + 360.0 * view / o.turntable;
             scene.view = view;
-            renderer.aim(scene.camera, scene.view);
+            session.set_view(scene, true);
         }
-        reached = render_view(renderer, denoiser ? &*denoiser : nullptr, scene, o, interrupted, pictures, outputs,
+        reached = render_view(session, denoiser ? &*denoiser : nullptr, scene, o, interrupted, pictures, outputs,
                               o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
     }
     if (!o.save_scene.empty()) {

@@ -101,8 +101,8 @@ void test_devices(const Options& o, const std::vector<const selftest::Check*>& w
     if (!o.json) fmt::print("every check passed\n");
 }
 
-/// Strange drivers end the process that they are loaded into: so the work is done in a child, and this process, which never calls OpenCL,
-/// says what the child was doing.
+/// Some drivers end the process that loads them. So a child does the work; this process never calls OpenCL and says what the child was
+/// doing.
 void selftest_command(const Options& o) {
     const auto wanted = selftest::chosen_checks(o.checks);
     void* memory = mmap(nullptr, sizeof(Running), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -119,7 +119,7 @@ void selftest_command(const Options& o) {
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
-    constexpr int by_llvm = 1; // its exit code where it gives up, and none of clvr's
+    constexpr int by_llvm = 1; // LLVM's exit code where it gives up; none of clvr's
     if (WIFEXITED(status) && WEXITSTATUS(status) != by_llvm) std::_Exit(WEXITSTATUS(status)); // the child has said everything
     const std::string how = WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status)) : strsignal(WTERMSIG(status));
     throw Error(ErrorKind::device,

@@ -6,8 +6,8 @@
 
 namespace clvr {
 
-/// Bars of log(1 + count) over low .. high, at most 64 columns and 8 rows, with numbers below; several lines. `values`: how many different
-/// values there can be, no more columns than that are drawn (0: any number).
+/// A bar chart of log(1 + count) over low .. high: at most 64 columns and 8 rows, with numbers below. `values`: how many different values
+/// there can be; no more columns than that are drawn (0: any number).
 std::string histogram_chart(const std::vector<std::uint64_t>& bins, double low, double high, double values);
 
 } // namespace clvr

@@ -137,7 +137,7 @@ void train(Options o) {
         spdlog::info("{} epochs, loss {:.6f}{}", trainer.records().size(), last.loss,
                      last.validation > 0 ? fmt::format(", validation {:.2f} dB", last.validation) : "");
     }
-    if (!finished) throw Error(ErrorKind::interrupted, "interrupted; saved, go on with --resume");
+    if (!finished) throw Error(ErrorKind::interrupted, "interrupted; saved, continue with --resume");
 }
 
 } // namespace

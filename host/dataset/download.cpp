@@ -92,7 +92,7 @@ bool may_pass(CURLcode code, long answer) {
     }
 }
 
-/// One transfer that appends to the part. Returns whether to try again; throws when that is in vain.
+/// One transfer that appends to the part. Returns whether to try again; throws when another try cannot help.
 bool transfer(const Download& what, const std::string& part, const std::function<void(std::uint64_t)>& progress,
               const std::atomic<bool>* cancelled, std::string& why) {
     const std::uint64_t begin = size_of(part);
@@ -137,7 +137,7 @@ bool transfer(const Download& what, const std::string& part, const std::function
     // A server that knows no ranges, or whose file is shorter than our part: from the beginning.
     if (begin > 0 && (code == CURLE_RANGE_ERROR || code == CURLE_BAD_DOWNLOAD_RESUME || answer == 416)) {
         fs::remove(part);
-        why = "does not go on with a part";
+        why = "cannot continue a part";
         return true;
     }
     why = code == CURLE_HTTP_RETURNED_ERROR ? fmt::format("answers {}", answer) : message[0] ? message : curl_easy_strerror(code);

@@ -58,7 +58,7 @@ int ChannelPlan::plane(const std::string& name) const {
 }
 
 shared::SourceParams ChannelPlan::params(double exposure) const {
-    constexpr float ceiling = 32; // DESIGN.md "Denoiser"
+    constexpr float ceiling = 32; // kernels/denoise/README.md, "Switches"
     shared::SourceParams p{};
     p.beauty = plane("R");
     p.albedo = demodulate_ ? plane("albedo.R") : -1;

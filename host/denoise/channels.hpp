@@ -43,17 +43,18 @@ private:
     int known_cell_;
     float albedo_floor_;
 
-    int plane(const std::string& name) const; // its number, -1: not among them
+    int plane(const std::string& name) const; // its number; -1 where there is no such plane
 };
 
 /// Whether a model reads the light.* channels of a frame.
 bool reads_light(const Model& model);
 
-/// DESIGN.md "Denoiser": 0.18 / exp2(mean log2 luminance), the mean over blocks of 16x16 pixels whose mean opacity is above 1/64 and whose
-/// luminance is above 0; 1 where there is none. Reads the whole frame: R G B less background, opacity.A (else A).
+/// The factor that brings radiance to a usual level (kernels/denoise/README.md, "Switches"): 0.18 / exp2(mean log2 luminance), the mean
+/// over blocks of 16x16 pixels whose mean opacity is above 1/64 and whose luminance is above 0; 1 where there is none. Reads the whole
+/// frame: R G B minus the background, opacity.A (else A).
 double exposure_of(const Frame& frame);
 
-/// A colour of a frame less the background seen through it, pixel by pixel. The frame outlives it.
+/// A colour of a frame, minus the background seen through it, pixel by pixel. The frame must outlive it.
 class BeautyWithoutBackground {
 public:
     /// `colour`: R, G or B.

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* colours[] = {"R", "G", "B"};
 
-/// Tiles begin at multiples of `align`, so that their grid cells are the picture's, and reach `halo` pixels beyond what they give.
+/// Tiles begin at multiples of `align`, so that their grid cells are the picture's, and read `halo` pixels around what they give.
 struct Tiling {
     int align = 1, halo = 0;
 
@@ -147,10 +147,10 @@ void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
     }
 }
 
-/// Gives light back to pixels whose feature rays missed what the paths met: structures thinner than a pixel, where opacity.A is 0 or nearly
-/// so and the result with it. Of the difference d to the input the share 1 - 4 v / d^2 comes back, v the input's variance (the
-/// positive-part James-Stein form, at two standard errors): nothing at few samples, all where it has converged; less the more the feature
-/// rays saw, nothing from a quarter on, one of four. A and the colours take the same share.
+/// Gives light back to pixels whose feature rays missed what the paths met: structures thinner than a pixel, where opacity.A is nearly 0
+/// and so is the result. With d the difference to the input and v the input's variance, the share 1 - 4 v / d^2 of d comes back (the
+/// positive-part James-Stein form, at two standard errors): nothing at few samples, all where the input has converged. The more the feature
+/// rays saw, the less comes back: nothing once one ray of four saw something. A and the colours take the same share.
 void give_back_missed_light(const Frame& noisy, Frame& done) {
     const std::vector<float>*opacity = noisy.find("opacity.A"), *alpha = noisy.find("A");
     if (!opacity || !alpha) return;
@@ -166,7 +166,7 @@ void give_back_missed_light(const Frame& noisy, Frame& done) {
             apart += d * d, noise += (*variance[c])[i];
         }
         const double share = apart > 0 ? missed * (1 - 4 * noise / apart) : 0;
-        if (!(share > 0)) continue; // not finite neither
+        if (!(share > 0)) continue; // includes what is not finite
         for (std::size_t c = 0; c < 3; ++c) {
             float& v = (*to[c])[i];
             v = static_cast<float>(v + share * (static_cast<double>(beauty[c](i)) - v));

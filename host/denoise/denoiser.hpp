@@ -21,12 +21,12 @@ public:
     Denoiser(const Device& device, const Model& model);
     ~Denoiser();
 
-    /// The frame with R G B replaced by the denoised beauty (not below 0) and the input's beauty as noisy.R G B; other channels and
-    /// attributes stay, "clvr.denoised" is added. A background (background.R G B) is taken off before and laid under the result again.
-    /// Where the frame has variances (from 2 samples per pixel on), the result goes back towards the input as that converges.
-    /// Non-finite values are repaired and counted in repaired(). With `show`: guide.1 ..., weight.1 ..., level1.R ... as further channels.
-    /// Any size of picture: what the device does not hold at once goes through in tiles that overlap, with the same bits. Throws
-    /// Error{input} naming a channel of the model that the frame lacks (and what it has), Error{memory}.
+    /// The frame with R G B replaced by the denoised beauty (not below 0) and the input's beauty as noisy.R G B. Other channels and
+    /// attributes stay; "clvr.denoised" is added. A background (background.R G B) is subtracted first and added below the result at the
+    /// end. Where the frame has variances (from 2 samples per pixel on), the result goes back towards the input as the input converges.
+    /// Non-finite values are repaired and counted in repaired(). `show` adds the channels guide.1 ..., weight.1 ..., level1.R .... A
+    /// picture of any size: what the device does not hold at once goes through in overlapping tiles, with the same bits. Throws
+    /// Error{input} naming a channel that the model reads and the frame lacks (and what it has); Error{memory}.
     Frame denoise(const Frame& frame, const DenoiserView& show = {});
 
     /// Values of the last frame that were not finite.

@@ -10,8 +10,8 @@ namespace {
 
 constexpr const char* colours[] = {"R", "G", "B"};
 constexpr double least_opacity = 1.0 / 256;
-constexpr double faith = 0.02; ///< what shares of 1, 1 and 0 weigh beside the pixels
-constexpr double spread = 0.2; ///< how far the shares of a cell are expected from the whole frame's
+constexpr double faith = 0.02; ///< weight of the prior (shares of 1, 1 and 0) relative to the pixels
+constexpr double spread = 0.2; ///< expected deviation of a cell's shares from the whole frame's
 
 /// Solves the positive definite system A x = b of three unknowns by Cholesky's decomposition; A's lower half is read.
 std::array<double, 3> solve(std::array<std::array<double, 3>, 3> a, std::array<double, 3> b) {
@@ -56,7 +56,7 @@ struct Sums {
             b[r] += weight * s.b[r];
         }
     }
-    /// What the shares leave of the squares, a value.
+    /// Mean square of what the shares leave unexplained.
     double left(const KnownLight::Shares& s) const {
         const double x[3] = {s.key, s.sky, s.ambient};
         double sum = squares;
@@ -66,7 +66,7 @@ struct Sums {
         }
         return std::max(sum, 0.0) / std::max(count, 1.0);
     }
-    /// The shares of least squares, where `expected` counts as if it had been seen with the weights `extra`.
+    /// The shares of least squares, with `expected` as a prior of the weights `extra`.
     KnownLight::Shares solved(const KnownLight::Shares& expected, const std::array<double, 3>& extra) const {
         auto matrix = a;
         auto right = b;
@@ -113,7 +113,7 @@ void KnownLight::fit(Colour& colour, const Frame& frame, const std::string& name
         const double opacity = finite(opacity_[i]), key = finite(colour.key[i]), sky = finite(colour.sky[i]),
                      ambient = finite(colour.albedo[i]) * opacity, noisy = finite(beauty(i));
         if (!(opacity > least_opacity)) continue;
-        // Noise grows with light: relative errors count, of very dark pixels less.
+        // Noise grows with light, so relative errors count; those of very dark pixels count less.
         const double scale = key + sky + 0.05 * ambient + 1e-6, weight = opacity / (scale * scale);
         // One path that is a hundred times as bright as what is known must not decide.
         const double value = std::min(noisy, 100 * scale);
@@ -128,7 +128,7 @@ void KnownLight::fit(Colour& colour, const Frame& frame, const std::string& name
     for (std::size_t r = 0; r < 3; ++r) extra[r] = faith * all.a[r][r] + 1e-9 * total + 1e-30;
     colour.whole = all.solved({}, extra);
     if (cell_ == 0) return;
-    // Bayes: a cell's shares are spread around the whole frame's, its values around its shares.
+    // A prior: a cell's shares deviate from the whole frame's by `spread`, its values by what the frame's fit left over.
     const double trust = all.left(colour.whole) / (spread * spread) / std::max(all.count, 1.0);
     for (std::size_t r = 0; r < 3; ++r) extra[r] = trust * all.a[r][r] + 1e-9 * total + 1e-30;
     tent(cells, static_cast<std::size_t>(across_), 1);
@@ -139,7 +139,7 @@ void KnownLight::fit(Colour& colour, const Frame& frame, const std::string& name
 KnownLight::Shares KnownLight::shares_at(int colour, std::size_t pixel) const {
     const Colour& c = colours_[static_cast<std::size_t>(colour)];
     if (cell_ == 0) return c.whole;
-    // Of the cells' centres around the pixel's.
+    // The two cells whose centres lie on either side of the pixel's, along an axis.
     struct Between {
         std::size_t low, high;
         double t;

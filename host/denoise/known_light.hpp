@@ -11,13 +11,13 @@ namespace clvr {
 /// The channels that KnownLight reads: light.key.*, light.sky.*, albedo.*, and opacity.A.
 const std::vector<std::string>& known_light_channels();
 
-/// a key + b sky + c albedo opacity for each colour: the shares a, b, c are those whose sum is closest to the frame's noisy radiance, by
-/// weighted least squares over the pixels with opacity above 1/256. Light that was scattered more than once follows the direct light
-/// closely enough for shares above 1 to hold part of it. The sums run over the pixels in order, in double: the same bits everywhere.
+/// The known part of each colour: a key + b sky + c albedo opacity. The shares a, b, c bring it closest to the frame's noisy radiance, by
+/// weighted least squares over the pixels with opacity above 1/256. Light that was scattered more than once follows the direct light so
+/// closely that shares above 1 hold part of it. The sums run over the pixels in order, in double: the same bits everywhere.
 ///
-/// `cell` > 0: the shares vary over the picture. Each cell of so many pixels a side has its own, fitted to itself and its neighbours (a
-/// tent) and held to the whole frame's as far as the noise asks; between the cells' centres they are bilinear. 0: the whole frame's
-/// everywhere.
+/// `cell` > 0: the shares vary over the picture. Each square cell of so many pixels a side has its own. They are fitted to the cell and its
+/// neighbours (weighted by a tent) and pulled towards the whole frame's shares, the more the noisier the cell is; between the centres of
+/// cells they are bilinear. 0: the whole frame's shares everywhere.
 class KnownLight {
 public:
     struct Shares {

@@ -7,23 +7,24 @@
 
 namespace clvr {
 
-/// GuideNet (Meng et al. 2020; `SPEC.md` sections 2 to 7): conv kernel x kernel (C_in -> hidden), leaky ReLU 0.2, conv (hidden ->
-/// outputs()), sigmoid: a guide per level, then a blending weight per level but the last. Tensors are OIHW, row-major.
+/// GuideNet (Meng et al. 2020; kernels/denoise/README.md, "Network"): conv kernel x kernel (C_in -> hidden), leaky ReLU 0.2, conv (hidden
+/// -> outputs()), sigmoid: a guide per level, then a blending weight per level but the last. Tensors are OIHW, row-major.
 struct Model {
     /// Sampling factors of a bilateral grid: pixels per cell (both ways), codes of the guide's 256 per cell.
     struct Level {
         int pixels = 4, codes = 4;
     };
 
-    /// Input channels in order, by their names in frames (DESIGN.md "Frames"). R, G, B (premultiplied beauty) are tone mapped, normal.*
-    /// becomes (n+1)/2, "noise" is (samples per pixel)^(-1/2), "known.R" ... (KnownLight) are tone mapped, the rest is taken as it is.
+    /// Input channels in order, by their names in frames (host/README.md, "Frames"). R, G, B (premultiplied beauty) are tone mapped,
+    /// normal.* becomes (n+1)/2, "noise" is (samples per pixel)^(-1/2), "known.R" ... (KnownLight) are tone mapped, the rest is taken as it
+    /// is.
     std::vector<std::string> channels;
     int hidden = 20;
     int kernel = 5; ///< odd
     std::vector<Level> levels{{4, 4}, {8, 8}, {16, 16}};
 
-    // Preprocessing beyond SPEC.md; absent from a file means these values.
-    bool exposure = false;                    ///< radiance scaled by 0.18 / exp2(mean log2 luminance), clamped at 32 (DESIGN.md "Denoiser")
+    // Preprocessing beyond the published method (kernels/denoise/README.md, "Switches"); absent from a file means these values.
+    bool exposure = false;                    ///< radiance scaled by 0.18 / exp2(mean log2 luminance), clamped at 32
     float albedo_floor = 0x1p-20f;            ///< radiance is divided and remultiplied by max(albedo, this)
     bool demodulation = true;                 ///< where the channels have the three of albedo; false: radiance is taken as it is
     bool control_variate = false;             ///< what is known of the light (known_light.hpp) is taken off before the grids, added after
@@ -53,8 +54,9 @@ Model default_settings();
 /// Sizes the tensors and draws them as the reference does: Glorot uniform kernels, zero biases. The same bits for a seed on every machine.
 void initialise(Model& model, std::uint64_t seed);
 
-/// Makes the model take known light off before its grids, by shares that vary over cells of 32 pixels, and read it as three more channels,
-/// whose weights are 0: before it is trained on, its guides are what they were. A model that does so already only gets the cells.
+/// Makes the model subtract the known light before its grids (with shares that vary over cells of 32 pixels) and read it as three more
+/// channels. Their weights begin at 0, so until the model is trained further its guides are what they were. A model that does this already
+/// only gets the cells.
 void add_known_light(Model& model);
 
 /// Throws Error{input} naming the first thing that is wrong: no channels, unknown or doubled ones, sizes out of range (channels 1..64,

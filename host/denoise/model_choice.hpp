@@ -25,12 +25,12 @@ struct MadeChannels {
     std::string said;
 };
 
-/// Gives the frame the opacity.A that a model weighs by and other renderers' files lack: A, else 1 (there is no background to look
-/// through).
+/// Where the model weighs pixels by opacity.A and the frame (of another renderer) has none, adds it: A, else 1, as there is no background
+/// to look through.
 MadeChannels add_opacity(Frame& frame, const Model& model);
 
-/// Gives a frame that has an albedo and no normal the normal 0, which in clvr's frames means that there is no surface: with it the albedo
-/// alone helps (datasets/results/small_models.md). An albedo of 1 beside normals would not.
+/// Where the frame has an albedo but no normal, adds the normal 0, which in clvr's frames means "no surface": with it, the albedo alone
+/// still helps (datasets/results/small_models.md). An albedo of 1 for a frame with normals does not help.
 MadeChannels add_normal(Frame& frame);
 
 } // namespace clvr

@@ -178,7 +178,7 @@ void NeuralGrid::set_parameters(const Buffer& parameters) {
 void NeuralGrid::assemble(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
                           int orientation, int n) {
     // The part's pixel (column, row) is the result of quarter turns of (x, y) within width x height, rows upside down first for 4..7
-    // (SPEC.md section 9): an affine map, found from three of its pixels.
+    // (kernels/denoise/README.md, "Training"): an affine map, found from three of its pixels.
     const auto source_pixel = [&](int column, int row) {
         int rows = params_.height, columns = params_.width;
         if (orientation >= 4) row = rows - 1 - row;

@@ -22,9 +22,9 @@ int channels_at_once(int channels, int most);
 class Convolution {
 public:
     Convolution() = default;
-    /// `stage`: kernels/<stage>.cl. `first`: of the layer's weights among the model's parameters, biases at `first_bias` (backwards: none).
-    /// Forward maps `in` channels to `out`; `mirrored` is the backward one, from the layer's `in` outputs to its `out` inputs. For rows of
-    /// `row_width` pixels.
+    /// `stage`: kernels/<stage>.cl. The layer's weights begin at parameter `first` of the model, its biases at `first_bias` (none
+    /// backwards). Forward maps `in` channels to `out`; `mirrored` is the backward one, from the layer's `in` outputs to its `out` inputs.
+    /// `row_width`: pixels of a row.
     Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
                 bool mirrored, int row_width);
     /// Takes the parameters (order of Model::flat).
@@ -35,7 +35,7 @@ public:
              const More&... more) {
         device.launch(kernel_, range(shape, images), group_, work(shape, images), params, in, weights_, bias_, out, more...);
     }
-    /// A row of planes for images so wide is a multiple of this [floats], plus the borders.
+    /// For images of this width, the floats of a row of a plane are a multiple of this, plus the borders.
     static int row_granularity(const Device& device, int row_width);
 
 private:

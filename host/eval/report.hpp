@@ -26,7 +26,7 @@ struct ReportPart {
 /// One self-contained HTML page (no scripts, no other files): mean and per-view tables, curves of PSNR by view and of the trainings, and
 /// for the worst, the median and the best view of the first model the pictures with 1:1 crops where the reference has most detail, and FLIP
 /// maps. Of several parts (noisy frames of other samples per pixel): tables and curves of the means by part, then the tables and curves of
-/// each; the telling views are those of the first part, with the crops of the others below. `folder` is the evaluated one. Throws Error.
+/// each; the three views are chosen by the first part, with the crops of the others below. `folder` is the evaluated one. Throws Error.
 std::string html_report(const std::vector<ReportPart>& parts, const std::string& folder, const ReportOptions& options);
 
 } // namespace clvr

@@ -62,18 +62,18 @@ std::vector<Test> tests_of(const AblationSettings& s) {
         }
         tests.push_back(test);
     }
-    for (Test& test : tests) // whole paths where names are the same
+    for (Test& test : tests) // whole paths where two names are the same
         if (std::count_if(tests.begin(), tests.end(), [&](const Test& other) { return name_of(other.folder) == name_of(test.folder); }) > 1)
             test.name = test.folder;
     return tests;
 }
 
-/// What all rows share, by content: folders may move.
+/// The settings that all rows share. Folders count by their content, as they may move.
 std::string shared_settings(const AblationSettings& s) {
     const auto contents = [](const std::vector<std::string>& folders) {
         ordered_json all = ordered_json::array();
         for (const std::string& folder : folders) {
-            read_pairs(folder); // throws where it is no whole one
+            read_pairs(folder); // throws where the folder is not complete
             all.push_back(sha256_hex(read_text((fs::path(folder) / "pairs.json").string())));
         }
         return all;
@@ -92,7 +92,7 @@ std::string shared_settings(const AblationSettings& s) {
            "\n";
 }
 
-/// Before anything is written: whether patches fit into the pictures of each folder (which all have one size).
+/// Checks, before anything is written, that patches fit into the pictures of each folder (which all have one size).
 void check_patches(const AblationSettings& s) {
     for (const std::string& folder : s.train) {
         const Frame first = read_exr(read_pairs(folder).views.front().noisy.front());
@@ -128,7 +128,7 @@ ordered_json json_of(const std::vector<AblationScore>& scores) {
     return all;
 }
 
-/// Measures the candidate where the file of its scores lacks some; gives those of all tests and samples per pixel.
+/// The scores of a candidate for all tests and samples per pixel: read from its file, and measured where the file lacks some.
 std::vector<AblationScore> scores_of(const Candidate& candidate, const std::vector<Test>& tests, const std::vector<int>& spp,
                                      const std::string& path, const std::function<void()>& seen) {
     std::vector<AblationScore> known = read_scores(path), wanted;

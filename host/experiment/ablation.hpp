@@ -16,10 +16,10 @@ struct AblationRow {
     Model model;       ///< channels and switches, without tensors
 };
 
-/// Rows 1 to 5 add up: colour, albedo, normal, depth, and with opacity, depth deviation and half depth the full set. Rows 6 to 8 change one
-/// thing of the full set: no demodulation by the albedo, pixels weighted by opacity in the splat, the noise level as a channel. On demand
-/// alone: both opacity weights and noise level; these with the known light (KnownLight) as channels; and with it taken off as well. All
-/// have the exposure and the albedo floor of clvr's default.
+/// Rows 1 to 5 add up: colour, albedo, normal, depth, then opacity, depth deviation and half depth, which make the full set. Rows 6 to 8
+/// change one thing of the full set: no demodulation by the albedo, pixels weighted by opacity in the splat, the noise level as a channel.
+/// Further rows run on demand only: opacity weights and noise level together; that with the known light (KnownLight) as channels; and that
+/// with the known light also subtracted. All have the exposure and the albedo floor of clvr's default.
 const std::vector<AblationRow>& ablation_rows();
 
 struct AblationSettings {
@@ -49,10 +49,10 @@ struct AblationResult {
 /// Markdown: the rows' means over the tests at each number of samples per pixel, then PSNR / SSIM of each test.
 std::string markdown_tables(const std::vector<AblationResult>& results);
 
-/// Trains and measures each row, after the noisy input; a row is kept in the folder as NAME.safetensors (and what `clvr train` leaves
-/// beside) and NAME.json, and not done again. settings.json has what all rows share, ablation.json and ablation.md the table. The models
-/// are the same bits however often this was interrupted. Throws Error{usage}: an unknown row, patches larger than the pictures;
-/// Error{input}: folders that are missing, not complete, without such noisy frames or references, a folder of another ablation;
+/// Measures the noisy input, then trains and measures each row. A row is kept in the folder as NAME.safetensors (with what `clvr train`
+/// leaves beside it) and NAME.json, and is not done again. settings.json has what all rows share, ablation.json and ablation.md the table.
+/// The models have the same bits however often this was interrupted. Throws Error{usage}: an unknown row, patches larger than the pictures;
+/// Error{input}: folders that are missing or not complete, that lack such noisy frames or references, or that belong to another ablation;
 /// Error{interrupted}.
 std::vector<AblationResult> run_ablation(const AblationSettings& settings, const std::string& folder, const Device& device,
                                          const Provenance& provenance, const ExperimentControl& control);

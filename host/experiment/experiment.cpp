@@ -180,7 +180,7 @@ std::vector<std::string> experiment_files(const std::string& folder) {
 Voxels experiment_volume(const ExperimentSettings& s, const std::string& folder, Device& device, const std::atomic<bool>& interrupted) {
     const std::string path = volume_path(s, folder);
     if (s.computed.empty()) return read_volume(path, s.scene.reading);
-    // Always as the file has it (which rounds the geometry to floats), also when it was made just now.
+    // Always read from the file, which rounds the geometry to floats, also when it was made just now.
     if (!fs::exists(path)) write_nifti(make_phantom(device, s.computed, {s.size.dims, s.size.type, s.volume_seed, &interrupted}), path);
     if (interrupted) interrupted_here();
     return read_volume(path);
@@ -189,7 +189,7 @@ Voxels experiment_volume(const ExperimentSettings& s, const std::string& folder,
 ExperimentOutcome run_experiment(const ExperimentSettings& settings, const std::string& folder, std::vector<Device> devices,
                                  const Provenance& provenance, const ExperimentControl& control) {
     validate(settings);
-    // Before anything is written; later on, the pairs may have made it unnecessary.
+    // Checked before anything is written. Once all pairs are there, the volume is not needed any more.
     if (settings.computed.empty() && !fs::exists(split_dataset_path(volume_path(settings, folder)).file) &&
         !fs::exists(fs::path(folder) / "experiment.json"))
         throw Error(ErrorKind::input, "there is no such file or folder", volume_path(settings, folder));

@@ -1,4 +1,4 @@
-// An experiment from nothing to a report, in stages that are gone on with.
+// An experiment from nothing to a report, in stages: a run that was interrupted continues at the next start.
 #pragma once
 #include "host/experiment/experiment_settings.hpp"
 #include "runtime/device.hpp"
@@ -27,11 +27,11 @@ struct ExperimentOutcome {
     std::string table;    ///< Markdown: means by samples per pixel
 };
 
-/// Does what the folder lacks of: experiment.json (the settings), volume.nii (computed volumes), train/ and test/ (as `clvr pairs` makes
-/// them), model.safetensors and what `clvr train` leaves beside it, evaluation.json (every view), results.json and results.md (means,
-/// device, seconds), report.html; stages.json has the seconds by stage. Of these only results.* and stages.json depend on the time that it
-/// took, the rest on the settings and the training device alone, however often it was interrupted. Renders on all devices, trains on the
-/// first. Throws Error{input}: the folder cannot be made or is of another experiment; Error{interrupted}.
+/// Makes whatever the folder still lacks of these files: experiment.json (the settings), volume.nii (computed volumes), train/ and test/
+/// (as `clvr pairs` makes them), model.safetensors and what `clvr train` leaves beside it, evaluation.json (every view), results.json and
+/// results.md (means, device, seconds), report.html, and stages.json (seconds of each stage). results.* and stages.json hold times; all
+/// others depend on the settings and the training device alone, however often the run was interrupted. Renders on all devices, trains on
+/// the first. Throws Error{input}: the folder cannot be made or belongs to another experiment; Error{interrupted}.
 ExperimentOutcome run_experiment(const ExperimentSettings& settings, const std::string& folder, std::vector<Device> devices,
                                  const Provenance& provenance, const ExperimentControl& control);
 
@@ -39,7 +39,7 @@ ExperimentOutcome run_experiment(const ExperimentSettings& settings, const std::
 Voxels experiment_volume(const ExperimentSettings& settings, const std::string& folder, Device& device,
                          const std::atomic<bool>& interrupted);
 
-/// The files that an experiment writes in its folder more than once, or without looking whether they are there.
+/// The files that an experiment writes more than once, or without looking whether they exist.
 std::vector<std::string> experiment_files(const std::string& folder);
 
 } // namespace clvr

@@ -38,7 +38,7 @@ RenderRates probe_rendering(const ExperimentSettings& s, const std::vector<Devic
     settle(plan, volume);
     const EnvironmentTables environment = read_environment(s.scene);
     Scene scene = frame_scene(plan, 0, 1);
-    Renderer renderer(devices, volume, scene, environment);
+    RenderSession session(devices, volume, scene, environment);
     RenderControl until;
     until.cancelled = &control.interrupted;
     const auto render = [&](int view, int spp, bool features) {
@@ -46,8 +46,8 @@ RenderRates probe_rendering(const ExperimentSettings& s, const std::vector<Devic
         at.spp = spp;
         Frame frame;
         const double seconds = seconds_of([&] {
-            renderer.turn_to(at);
-            frame = renderer.render(until);
+            session.set_view(at);
+            frame = clvr::render(session, at, until);
         });
         if (control.interrupted) throw Error(ErrorKind::interrupted, "interrupted");
         return std::pair(seconds, frame);

@@ -26,7 +26,7 @@ struct ExperimentEstimate {
 };
 
 /// Makes or reads the volume in memory, renders a few passes of views of the scene, takes a few training steps, measures one picture, and
-/// reckons from these, for an experiment from nothing. Writes nothing. Throws Error.
+/// estimates from these what an experiment from nothing takes. Writes nothing. Throws Error.
 ExperimentEstimate estimate_experiment(const ExperimentSettings& settings, const std::string& folder, std::vector<Device> devices,
                                        const ExperimentControl& control);
 

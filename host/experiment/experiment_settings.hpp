@@ -22,7 +22,7 @@ struct ExperimentSettings {
     std::string computed;             ///< the volume as make_phantom names it; empty: scene.volume is a file
     PhantomSize size;                 ///< of the computed volume
     std::uint64_t volume_seed = 0;    ///< of the computed volume
-    Scene scene;                      ///< what is seen and how; its volume is a path as seen from the folders of pairs
+    Scene scene;                      ///< what is seen and how; the path of its volume is relative to the folders of pairs
     std::vector<int> spp{1, 2, 4, 8}; ///< of each view's noisy frames
     SplitSettings train, test;
     TrainerConfig training;

@@ -19,7 +19,7 @@ struct Measurement {
 /// The name of the trained network among the candidates.
 constexpr const char* trained_candidate = "clvr";
 
-/// Measures at every frame that the file `path` lacks and writes it after each; the classical denoisers are tuned on at most 8 views of the
+/// Measures the frames that the file `path` lacks and writes it after each; the classical denoisers are tuned on at most 8 views of the
 /// training pairs. Throws Error{interrupted}.
 std::vector<Measurement> measure(const Device& device, const Model& model, const std::string& train_folder, const std::string& test_folder,
                                  const std::vector<int>& spp, const std::string& path, const std::atomic<bool>& interrupted,

@@ -16,12 +16,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The renderer's frame; nothing when interrupted before it was complete.
-std::optional<Frame> frame_of(Renderer& renderer, const Scene& scene, const std::atomic<bool>& interrupted) {
+/// The scene's frame; nothing when interrupted before it was complete.
+std::optional<Frame> frame_of(RenderSession& session, const Scene& scene, const std::atomic<bool>& interrupted) {
     RenderControl control;
     control.cancelled = &interrupted;
     try {
-        Frame frame = renderer.render(control);
+        Frame frame = render(session, scene, control);
         if (std::stoi(frame.attributes.at("clvr.spp")) < scene.spp) return std::nullopt;
         frame.attributes["clvr.scene"] = provenance_json(scene);
         frame.attributes["clvr.seed"] = std::to_string(scene.seed);
@@ -54,25 +54,25 @@ int render_pairs(std::vector<Device>& devices, const PreparedVolume& volume, con
     const int count = static_cast<int>(plan.views.size()), kinds = static_cast<int>(plan.scenes.size());
     int done = 0;
     for (int kind = 0; kind < kinds; ++kind) {
-        std::optional<Renderer> renderer; // one upload of the volume for all frames of a transfer function
+        std::optional<RenderSession> session; // one upload of the volume for all frames of a transfer function
         for (int v = kind; v < count; v += kinds) {
             for (int role = plan.reference_spp > 0 ? 0 : 1; role <= plan.noisy_frames; ++role) {
                 const std::string path = (fs::path(folder) / (role == 0 ? reference_name(v) : noisy_name(v, role - 1))).string();
                 if (fs::exists(path)) continue;
                 if (interrupted) return done;
                 const Scene scene = frame_scene(plan, v, role);
-                if (renderer)
-                    renderer->turn_to(scene);
+                if (session)
+                    session->set_view(scene);
                 else
-                    renderer.emplace(devices, volume, scene, environment);
+                    session.emplace(devices, volume, scene, environment);
                 progress(done);
-                const std::optional<Frame> frame = frame_of(*renderer, scene, interrupted);
+                const std::optional<Frame> frame = frame_of(*session, scene, interrupted);
                 if (!frame) return done;
                 write_exr(*frame, path);
             }
             ++done;
         }
-        if (renderer) devices = renderer->devices(); // without one that failed
+        if (session) devices = session->devices(); // without one that failed
     }
     return done;
 }

@@ -1,4 +1,4 @@
-// Folders of pairs rendered, or gone on with.
+// Renders folders of pairs, and continues unfinished ones.
 #pragma once
 #include "host/experiment/pairs_plan.hpp"
 
@@ -9,8 +9,8 @@
 
 namespace clvr {
 
-/// Makes the folder with the plan as its pairs.json; one that is there must hold the same. Throws Error{input}: cannot be made, holds pairs
-/// of another plan.
+/// Makes the folder and writes the plan as its pairs.json; a pairs.json that is there must hold the same plan. Throws Error{input}: the
+/// folder cannot be made, or holds pairs of another plan.
 void begin_pairs_folder(const std::string& folder, const PairsPlan& plan);
 
 /// Whether the folder holds every frame of its pairs.json.

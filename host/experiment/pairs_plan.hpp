@@ -1,6 +1,6 @@
 // What a folder of pairs holds: pairs.json.
 #pragma once
-#include "host/render/renderer.hpp"
+#include "host/render/session.hpp"
 #include "host/render/view_set.hpp"
 
 #include <cstdint>
@@ -30,8 +30,8 @@ std::vector<ViewPoint> split_views(const std::string& split, std::uint64_t seed,
 /// The scene of one frame of a view: role 0 is the reference, 1 .. the noisy ones.
 Scene frame_scene(const PairsPlan& plan, int view, int role);
 
-/// Settles the defaults that depend on the voxels, so that pairs.json does not depend on later ones. Throws Error{input} when the plan is
-/// of other voxels.
+/// Fixes the defaults that depend on the voxels, so that pairs.json does not change with later defaults. Throws Error{input} when the plan
+/// is of other voxels.
 void settle(PairsPlan& plan, const PreparedVolume& volume);
 
 } // namespace clvr

@@ -56,7 +56,7 @@ void StageTimes::write() const {
 StageTimes::Adding::~Adding() {
     try {
         times.add(stage, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    } catch (const Error&) { // a full disk: what the stage itself says of it counts
+    } catch (const Error&) { // a full disk, say: the stage's own error is the one to show
     }
 }
 

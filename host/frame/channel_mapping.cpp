@@ -46,7 +46,7 @@ std::string plain(const std::string& layer) {
     return name;
 }
 
-/// Rank of a layer among the spellings of a pass; their number: none of them.
+/// Rank of a layer among the spellings of a pass; the number of spellings where it is none of them.
 std::size_t rank(const Pass& pass, const std::string& layer) {
     const std::string name = plain(layer);
     return static_cast<std::size_t>(std::find(pass.spellings.begin(), pass.spellings.end(), name) - pass.spellings.begin());

@@ -16,8 +16,8 @@ std::string known_pass(const std::string& layer);
 /// there is.
 void map_channels(Frame& frame, const std::string& mapping);
 
-/// Where the frame lacks the beauty, albedo, normal or depth under clvr's names and has them under another known one, takes them from
-/// there. Returns a sentence for each. A depth that is a share 0..1, as clvr's, is taken too; of distances it says that they are not.
+/// Takes the beauty, albedo, normal or depth from a channel of another known name where the frame lacks it under clvr's name. Returns a
+/// sentence for each. A depth is taken where it is a share 0..1, as clvr's is; where it is a distance, a sentence says that it is not.
 std::vector<std::string> map_known_channels(Frame& frame);
 
 } // namespace clvr

@@ -17,11 +17,9 @@ struct Region {
     friend bool operator!=(const Region& a, const Region& b) { return !(a == b); }
 };
 
-/// Channels are planar float32, row 0 on top, width*height values each, named as in DESIGN.md section 4 "Frames":
-/// R G B A (linear, premultiplied), albedo.R ..., normal.X ..., depth.Z, opacity.A, depth.deviation, depth.half, variance.R ...,
-/// background.R ...
+/// Channels are planar float32, row 0 on top, width*height values each; their names are in host/README.md, "Frames".
 struct Frame {
-    /// What a file says beside its pixels in another type than text, kept for the next file: the bytes of the value as OpenEXR writes them.
+    /// A value of a file that is no text, kept for the next file: its bytes as OpenEXR writes them.
     struct Attribute {
         std::string type, bytes;
         bool operator==(const Attribute& other) const { return type == other.type && bytes == other.bytes; }
@@ -35,7 +33,7 @@ struct Frame {
     std::map<std::string, std::string>
         attributes; ///< provenance: "clvr.volume.sha256", "clvr.scene", "clvr.seed", "clvr.spp", "clvr.device", ...
     std::map<std::string, Attribute> further; ///< of a file that was read: chromaticities, worldToCamera, ...
-    std::vector<std::string> notes;           ///< how its reader understood what may surprise, a sentence each; commands print them
+    std::vector<std::string> notes; ///< what its reader understood in a way that may surprise, a sentence each; commands print them
 
     std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
     bool has(const std::string& name) const { return channels.count(name) != 0; }
@@ -60,8 +58,8 @@ struct Frame {
         f.width = width, f.height = height, f.x = x, f.y = y, f.display = display, f.pixel_aspect = pixel_aspect;
         return f;
     }
-    /// The opacity with which the picture is shown: A; null where it is opaque, as it has none or lies over a background (background.R ...;
-    /// A is the camera rays' opacity there, too).
+    /// The opacity with which the picture is shown: A, or null where the picture is opaque. It is opaque when it has no A, and when it lies
+    /// over a background (background.R ...; A is the camera rays' opacity there, too).
     const std::vector<float>* shown_alpha() const { return has("background.R") ? nullptr : find("A"); }
     /// The best that is known of the camera rays' opacity: opacity.A (free of noise), else A, else null.
     const std::vector<float>* opacity() const { return has("opacity.A") ? find("opacity.A") : find("A"); }

@@ -41,7 +41,7 @@ Rgb reinhard(const Rgb& c) {
 
 Rgb unchanged(const Rgb& c) { return c; }
 
-/// A picture of NaN would be black anyway; what the frame holds stays in its EXR.
+/// NaN would be shown as black anyway; the EXR keeps what the frame holds.
 double displayable(double x) { return x > 0 ? std::min(x, 1e30) : 0.0; }
 
 } // namespace

@@ -52,7 +52,7 @@ void synchronise(const std::string& path, int flags) {
 } // namespace
 
 fs::path final_place(const fs::path& path) {
-    constexpr int most_links = 40; // as the system follows
+    constexpr int most_links = 40; // as many as the system follows
     fs::path place = path;
     std::error_code failed;
     for (int k = 0; k < most_links && fs::is_symlink(fs::symlink_status(place, failed)); ++k) {

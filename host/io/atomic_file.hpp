@@ -7,7 +7,8 @@
 
 namespace clvr {
 
-/// Where the bytes of a file of this name go: symbolic links are followed, so that they stay links; also those to what is not there yet.
+/// Where the bytes of a file of this name go. Symbolic links are followed, so that they stay links; also links to a file that does not
+/// exist yet.
 std::filesystem::path final_place(const std::filesystem::path& path);
 
 /// Throws Error{input} with the reason unless a regular file can be made or replaced at `path`. Leaves nothing behind.

@@ -74,7 +74,7 @@ std::size_t ByteStream::inflate_some(void* to, std::size_t bytes) {
         }
         const int status = inflate(&in.z, Z_NO_FLUSH);
         if (status == Z_STREAM_END) {
-            // A gzip file may hold several members in a row; anything else behind the end is none of the data.
+            // A gzip file may hold several members in a row; anything else after the end is not data.
             if (in.z.avail_in < 2) {
                 std::memmove(in.input.data(), in.z.next_in, in.z.avail_in);
                 in.z.next_in = in.input.data();
@@ -132,7 +132,7 @@ ByteStream open_inside(const std::string& path) {
 }
 
 std::string read_head(const std::string& path, std::size_t limit) {
-    const auto file = open(path); // no ByteStream: whoever looks at a file's head need not take it as an input
+    const auto file = open(path); // no ByteStream, as that declares an input: looking at a file's head is no use of it yet
     std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, std::filesystem::file_size(path))), '\0');
     head.resize(std::fread(head.data(), 1, head.size(), file.get()));
     if (std::ferror(file.get())) unreadable(path);

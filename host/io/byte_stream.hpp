@@ -8,7 +8,7 @@
 namespace clvr {
 
 /// Reads forward from an offset of a file: the plain bytes, or what gzip members or one zlib stream decode to. Damage and a missing end
-/// throw Error{input} naming the file; for compressed data that is sure only after `drain`, which reads up to the checksum.
+/// throw Error{input} naming the file; for compressed data this is certain only after `drain`, which reads up to the checksum.
 class ByteStream {
 public:
     enum class Coding { plain, deflated };

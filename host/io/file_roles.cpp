@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Device and inode; of a file that is not there yet those of its folder, and its name.
+/// Device and inode. For a file that does not exist yet: those of its folder, and its name.
 using Identity = std::tuple<dev_t, ino_t, std::string>;
 
 std::optional<Identity> identity_of(const struct stat& s) {
@@ -25,7 +25,7 @@ std::optional<Identity> identity_of(const struct stat& s) {
     return Identity{s.st_dev, s.st_ino, ""};
 }
 
-/// Nothing for what is there and is no regular file.
+/// Nothing for what exists and is no regular file.
 std::optional<Identity> identity_of(const std::string& path) {
     struct stat s {};
     if (::stat(path.c_str(), &s) == 0) return identity_of(s);

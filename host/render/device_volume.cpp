@@ -47,44 +47,85 @@ BrickLayout device_layout(const Device& device, const Classified& c) {
     constexpr int usual = 5;
     const int by_dims = brick_log2_edge(c.voxels->dims), log2_edge = by_dims == usual ? device.tunable("brick_log2", usual) : by_dims;
     if (log2_edge < 2 || log2_edge > 8) refuse_tunable("brick_log2", log2_edge, "2 to 8");
-    return brick_layout(*c.voxels, *c.grid, c.majorants, log2_edge, device.max_alloc_bytes());
+    const std::size_t most = device.max_alloc_bytes();
+    // The apron at edge 32 adds at most 31 %; thin volumes are kept to what is visible.
+    const double all = 1.31 * static_cast<double>(c.voxels->count()) * static_cast<double>(voxel_bytes(c.voxels->type));
+    if (by_dims == usual && all <= static_cast<double>(std::min(most, device.free_bytes() / 2))) {
+        BrickLayout layout = brick_layout(*c.voxels, *c.grid, std::vector<float>(c.grid->count(), 1), log2_edge, most);
+        if (layout.pools == 1) return layout;
+    }
+    return brick_layout(*c.voxels, *c.grid, c.majorants, log2_edge, most);
 }
 
-DeviceVolume::DeviceVolume(Device& device, const Classified& c, const BrickLayout& layout, const shared::VolumeParams& params)
-    : host_params_(params) {
-    params_ = device.upload(std::vector<shared::VolumeParams>{params}, "volume parameters");
-    majorants_ = device.upload(c.majorants, "majorants");
-    opacity_ = device.upload(c.table.opacity, "opacity table");
-    color_ = device.upload(c.table.color, "colour table");
-    offset_ = device.upload(layout.offset, "brick offsets");
-    pool_ = device.upload(layout.pool, "brick pools");
-    for (int k = 0; k < layout.pools; ++k) {
-        voxels_.push_back(device.buffer(std::max<std::size_t>(layout.pool_bytes[k], 16), "bricks"));
-        pack_pool(*c.voxels, layout, k, upload_piece,
-                  [&](const unsigned char* bytes, std::size_t size, std::size_t offset) { device.write(voxels_[k], bytes, size, offset); });
-    }
+DeviceBricks::DeviceBricks(Device& device, const Classified& c, const BrickLayout& layout)
+    : layout_(layout), present_(layout.offset.size(), 0), offset_(device.upload(layout.offset, "brick offsets")),
+      pool_(device.upload(layout.pool, "brick pools")) {
+    for (const std::size_t bytes : layout.pool_bytes) voxels_.push_back(device.buffer(std::max<std::size_t>(bytes, 16), "bricks"));
     const VoxelType type = c.voxels->type;
     defines_ = {{"CLVR_VOXEL", opencl_type(type)},
                 {"CLVR_VOXEL_BITS", std::to_string(8 * voxel_bytes(type))},
                 {"CLVR_VOXEL_SIGNED", type == VoxelType::i8 || type == VoxelType::i16 ? "1" : "0"},
                 {"CLVR_POOLS", std::to_string(layout.pools)}};
+    if (!show(device, c)) throw Error(ErrorKind::internal, "a layout of bricks lacks one that is visible", "DeviceBricks");
+}
 
+bool DeviceBricks::show(Device& device, const Classified& c) {
+    const std::vector<char> needed = needed_bricks(*c.grid, c.majorants, layout_);
+    std::vector<std::vector<std::size_t>> missing(voxels_.size()); // by pool
+    for (std::size_t b = 0; b < needed.size(); ++b) {
+        if (!needed[b] || present_[b]) continue;
+        if (layout_.offset[b] == BrickLayout::absent) return false;
+        missing[layout_.pool[b]].push_back(b);
+    }
+    for (std::size_t k = 0; k < missing.size(); ++k) {
+        pack_bricks(*c.voxels, layout_, missing[k], upload_piece, [&](const unsigned char* bytes, std::size_t size, std::size_t offset) {
+            device.write(voxels_[k], bytes, size, offset);
+        });
+        for (const std::size_t b : missing[k]) present_[b] = 1;
+    }
+    return true;
+}
+
+void DeviceBricks::append_to(BufferList& list) const {
+    list.push_back(&offset_);
+    list.push_back(&pool_);
+    for (const Buffer& b : voxels_) list.push_back(&b);
+}
+
+DeviceAppearance::DeviceAppearance(Device& device, const Classified& c, const shared::VolumeParams& params, const DeviceBricks& bricks)
+    : host_params_(params), params_(device.upload(std::vector<shared::VolumeParams>{params}, "volume parameters")),
+      majorants_(device.upload(c.majorants, "majorants")), opacity_(device.upload(c.table.opacity, "opacity table")),
+      color_(device.upload(c.table.color, "colour table")) {
     std::vector<std::uint32_t> visible(c.table.opacity.size() + 1, 0);
     for (std::size_t e = 0; e < c.table.opacity.size(); ++e) visible[e + 1] = visible[e] + (c.table.opacity[e] > 0 ? 1 : 0);
     const Buffer visible_before = device.upload(visible, "visible table entries");
     const Range cells{static_cast<std::size_t>(params.coarse.x), static_cast<std::size_t>(params.coarse.y),
                       static_cast<std::size_t>(params.coarse.z)};
     coarse_ = device.buffer(cells.x * cells.y * cells.z * sizeof(float), "coarse opacity");
-    Kernel kernel = device.kernel("volume/coarse_opacity", defines_);
-    device.launch(kernel, cells, kernel.group(packet_group(device, 1)), {}, arguments(), visible_before, coarse_);
+    Kernel kernel = device.kernel("volume/coarse_opacity", bricks.defines());
+    BufferList volume;
+    append_to(volume);
+    bricks.append_to(volume);
+    device.launch(kernel, cells, kernel.group(packet_group(device, 1)), {}, volume, visible_before, coarse_);
     std::vector<float> mean = device.download<float>(coarse_, cells.x * cells.y * cells.z);
     mark_distances(mean, params.coarse);
     device.write(coarse_, mean.data(), mean.size() * sizeof(float));
 }
 
+void DeviceAppearance::append_to(BufferList& list) const {
+    for (const Buffer* b : {&params_, &majorants_, &opacity_, &color_}) list.push_back(b);
+}
+
+bool DeviceVolume::set_appearance(Device& device, const Classified& c, const shared::VolumeParams& params) {
+    if (!bricks_.show(device, c)) return false;
+    appearance_ = DeviceAppearance(device, c, params, bricks_);
+    return true;
+}
+
 BufferList DeviceVolume::arguments() const {
-    BufferList list{&params_, &majorants_, &opacity_, &color_, &offset_, &pool_};
-    for (const Buffer& b : voxels_) list.push_back(&b);
+    BufferList list;
+    appearance_.append_to(list);
+    bricks_.append_to(list);
     return list;
 }
 

@@ -67,4 +67,9 @@ KeyLights::KeyLights(Device& device, const std::vector<shared::KeyLight>& keys)
     : count_(static_cast<int>(keys.size())), lobe_(device.upload(surface_lobe_table(), "surface lobe")),
       keys_(device.upload(keys.empty() ? std::vector<shared::KeyLight>(1) : keys, "key lights")) {}
 
+void KeyLights::set(Device& device, const std::vector<shared::KeyLight>& keys) {
+    if (static_cast<int>(keys.size()) != count_) throw Error(ErrorKind::internal, "the number of key lights has changed", "KeyLights");
+    device.write(keys_, keys.data(), keys.size() * sizeof(shared::KeyLight));
+}
+
 } // namespace clvr

@@ -26,6 +26,8 @@ private:
 class KeyLights {
 public:
     KeyLights(Device& device, const std::vector<shared::KeyLight>& keys);
+    /// As many keys in other directions: writes those alone.
+    void set(Device& device, const std::vector<shared::KeyLight>& keys);
     int count() const { return count_; }
     const Buffer& lobe() const { return lobe_; }
     const Buffer& keys() const { return keys_; } ///< [count] KeyLight

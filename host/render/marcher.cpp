@@ -10,13 +10,14 @@ std::uint32_t Marcher::pixels_per_launch(const Device& device) {
     return static_cast<std::uint32_t>(std::max(16, device.tunable("march_pixels", cpu ? 1 << 14 : 1 << 16)));
 }
 
-Marcher::Marcher(Device& device, const DeviceVolume& volume, const LightTables& light, const KeyLights& keys, const SkyLight& sky, int rays)
+Marcher::Marcher(Device& device, const DeviceVolume& volume, const DeviceLights& light, const KeyLights& keys, const SkyLight& sky,
+                 int rays)
     : Marcher(device, volume, light, &keys, &sky, March::features, rays) {}
 
-Marcher::Marcher(Device& device, const DeviceVolume& volume, const LightTables& light, March march, int rays)
+Marcher::Marcher(Device& device, const DeviceVolume& volume, const DeviceLights& light, March march, int rays)
     : Marcher(device, volume, light, nullptr, nullptr, march, rays) {}
 
-Marcher::Marcher(Device& device, const DeviceVolume& volume, const LightTables& light, const KeyLights* keys, const SkyLight* sky,
+Marcher::Marcher(Device& device, const DeviceVolume& volume, const DeviceLights& light, const KeyLights* keys, const SkyLight* sky,
                  March march, int rays)
     : device_(device), volume_(volume), light_(light), keys_(keys), sky_(sky), count_(march_planes(march, keys != nullptr)),
       width_(packet_width(device)), at_once_(pixels_per_launch(device)) {
@@ -28,6 +29,7 @@ Marcher::Marcher(Device& device, const DeviceVolume& volume, const LightTables& 
     defines["CLVR_MARCH"] = std::to_string(static_cast<int>(march));
     defines["CLVR_LIT"] = keys ? "1" : "0";
     march_ = device_.kernel("render/march", defines);
+    place_ = device_.kernel("render/place");
 
     const std::size_t sums = keys ? sizeof(float) * rays * CLVR_LIGHT_SUMS(keys->count()) : 0; // a pixel
     constexpr std::uint32_t least = 1024;
@@ -42,6 +44,15 @@ void Marcher::run(std::uint32_t first_pixel, std::uint32_t pixels, std::vector<f
         const std::uint32_t n = std::min(at_once_, pixels - done);
         launch(first_pixel + done, n);
         for (int p = 0; p < count_; ++p) device_.read(planes_, &planes[p * stride + offset + done], n * 4, std::size_t{4} * p * stride_);
+    }
+}
+
+void Marcher::run(std::uint32_t first_pixel, std::uint32_t pixels, Film& film, int first_plane) {
+    for (std::uint32_t done = 0; done < pixels; done += at_once_) {
+        const std::uint32_t n = std::min(at_once_, pixels - done), first = first_pixel + done;
+        launch(first, n);
+        device_.launch(place_, {n}, place_.group(64), {8.0 * n * count_, 0}, planes_, stride_, static_cast<cl_uint>(count_), first, n,
+                       film.width(), film.height(), film.planes(), static_cast<cl_uint>(first_plane));
     }
 }
 

@@ -112,7 +112,6 @@ shared::RenderParams render_params(const Scene& scene, const Voxels& v, const Vi
     p.width = scene.width, p.height = scene.height;
     p.bounces = scene.bounces;
     p.phase_g = static_cast<float>(scene.phase_g);
-    p.mode = static_cast<int>(scene.mode);
 
     // The sky's radiance is proportional to 0.6 + 0.3 z: 0.3 below, 0.9 above. A black environment keeps a density to divide by.
     const Light& light = scene.light;

@@ -23,8 +23,14 @@ std::uint32_t wave_paths(const Device& device, std::uint32_t pixels) {
 
 } // namespace
 
-PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTables& light, std::uint32_t pixels)
-    : device_(device), volume_(volume), light_(&light), width_(packet_width(device)) {
+PixelSums::PixelSums(Device& device, std::uint32_t pixels)
+    : mean(device.buffer(std::size_t{16} * pixels, "pixel means")), deviation(device.buffer(std::size_t{16} * pixels, "pixel deviations")) {
+    device.fill(mean, 0);
+    device.fill(deviation, 0);
+}
+
+PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const DeviceLights& light, std::uint32_t pixels)
+    : device_(device), volume_(volume), light_(light), width_(packet_width(device)) {
     capacity_ = wave_paths(device, pixels);
     run_ = std::max(1, device.tunable("packet_run", width_ == 1 ? 1 : 16));
     per_packet_ = packet_group(device, width_);
@@ -49,30 +55,24 @@ PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const LightTa
         *b = device_.buffer(n * 16, "path state");
     for (Buffer* b : {&active_, &next_active_, &state_, &shadowed_}) *b = device_.buffer(n * 4, "path lists");
     counts_ = device_.buffer(8, "path counts");
-    mean_ = device_.buffer(n * 16, "pixel means");
-    deviation_ = device_.buffer(n * 16, "pixel deviations");
 }
 
 std::uint32_t PathTracer::pixels_per_wave(std::uint32_t samples) const {
     return std::max(1u, capacity_ / std::min(samples, samples_per_wave));
 }
 
-bool PathTracer::trace(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples, PixelSums& sums,
-                       std::size_t offset, const std::atomic<bool>& cancelled) {
+bool PathTracer::trace(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples,
+                       const PixelSums& before, PixelSums& after, std::uint32_t offset, const std::atomic<bool>& cancelled) {
     const std::uint32_t at_once = std::min(samples, samples_per_wave), wave = pixels_per_wave(samples);
     for (std::uint32_t done = 0; done < pixels; done += wave) {
         const std::uint32_t n = std::min(wave, pixels - done);
-        device_.write(mean_, &sums.mean[offset + done], n * sizeof(shared::float4));
-        device_.write(deviation_, &sums.deviation[offset + done], n * sizeof(shared::float4));
         for (std::uint32_t s = 0; s < samples; s += at_once) {
-            if (cancelled) return false;
             const std::uint32_t k = std::min(at_once, samples - s);
-            trace_wave(first_pixel + done, n, first_sample + s, k);
-            device_.launch(accumulate_, {n}, accumulate_.group(64), {n * (32.0 + 16.0 * k), 0}, radiance_, mean_, deviation_, n, k,
-                           first_sample + s);
+            if (!trace_wave(first_pixel + done, n, first_sample + s, k, cancelled)) return false;
+            const PixelSums& from = s == 0 ? before : after;
+            device_.launch(accumulate_, {n}, accumulate_.group(64), {n * (64.0 + 16.0 * k), 0}, radiance_, from.mean, from.deviation,
+                           after.mean, after.deviation, offset + done, n, k, first_sample + s);
         }
-        device_.read(mean_, &sums.mean[offset + done], n * sizeof(shared::float4));
-        device_.read(deviation_, &sums.deviation[offset + done], n * sizeof(shared::float4));
     }
     return true;
 }
@@ -86,31 +86,38 @@ void PathTracer::fly_camera_rays(std::uint32_t pixels) {
     device_.finish();
 }
 
-void PathTracer::trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples) {
+/// Into radiance_. False when cancelled.
+bool PathTracer::trace_wave(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples,
+                            const std::atomic<bool>& cancelled) {
+    if (cancelled) return false;
     start_paths(first_pixel, pixels, first_sample, samples);
     std::uint32_t active = pixels * samples;
     for (std::uint32_t bounce = 0; active > 0; ++bounce) {
+        if (cancelled) return false;
         fly(active, bounce);
+        if (cancelled) return false;
         shade(active, bounce);
         const auto [going, lit] = list_survivors(active);
+        if (cancelled) return false;
         gather_light(lit, bounce);
         active = going;
     }
+    return true;
 }
 
 void PathTracer::start_paths(std::uint32_t first_pixel, std::uint32_t pixels, std::uint32_t first_sample, std::uint32_t samples) {
     const std::uint32_t n = pixels * samples;
-    device_.launch(camera_rays_, {n}, camera_rays_.group(per_path_), {n * 92.0, 0}, light_->render(), paths(), active_, n, first_pixel,
+    device_.launch(camera_rays_, {n}, camera_rays_.group(per_path_), {n * 92.0, 0}, light_.render(), paths(), active_, n, first_pixel,
                    first_sample, samples);
 }
 
 void PathTracer::fly(std::uint32_t active, std::uint32_t bounce) {
-    device_.launch(free_flight_, packets(active), free_flight_.group(per_packet_), {}, volume_.arguments(), light_->render(), paths(),
+    device_.launch(free_flight_, packets(active), free_flight_.group(per_packet_), {}, volume_.arguments(), light_.render(), paths(),
                    active_, active, bounce);
 }
 
 void PathTracer::shade(std::uint32_t active, std::uint32_t bounce) {
-    device_.launch(shade_, {active}, shade_.group(per_path_), {}, volume_.arguments(), light_->arguments(), lobe_, paths(), active_, state_,
+    device_.launch(shade_, {active}, shade_.group(per_path_), {}, volume_.arguments(), light_.arguments(), lobe_, paths(), active_, state_,
                    active, bounce);
 }
 
@@ -126,7 +133,7 @@ PathTracer::Survivors PathTracer::list_survivors(std::uint32_t active) {
 
 void PathTracer::gather_light(std::uint32_t lit, std::uint32_t bounce) {
     if (lit == 0) return;
-    device_.launch(transmittance_, packets(lit), transmittance_.group(per_packet_), {}, volume_.arguments(), light_->render(), paths(),
+    device_.launch(transmittance_, packets(lit), transmittance_.group(per_packet_), {}, volume_.arguments(), light_.render(), paths(),
                    shadowed_, lit, bounce);
 }
 

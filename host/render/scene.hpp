@@ -50,27 +50,36 @@ struct ClipPlane {
     double offset = 0; ///< [mm]
 };
 
-struct Scene {
+/// How values look: decides which bricks are needed and where light scatters.
+struct Appearance {
+    std::optional<TransferFunction> transfer; ///< absent: automatic
+    Shading shading = Shading::automatic;
+    double phase_g = 0;                            ///< Henyey-Greenstein asymmetry, -1 < g < 1
+    double extinction = 0;                         ///< at opacity 1 [1/mm]; 0: automatic, 512 / diagonal of the volume
+    std::optional<std::array<double, 6>> clip_box; ///< low xyz, high xyz as shares 0..1 of the volume along its index axes
+    std::optional<ClipPlane> clip_plane;
+};
+
+/// From where the volume is seen, and by which random paths.
+struct Viewpoint {
+    Camera camera;
+    int bounces = 8; ///< greatest number of scattering events; 0: unlimited
+    std::uint64_t seed = 0;
+    int view = 0; ///< turntable frame or view number: part of the random key
+};
+
+/// A scene is its parts: each may be handed alone to what takes only that part (RenderSession's setters).
+struct Scene : Appearance, Viewpoint {
     std::string volume;        ///< file, folder or "demo:head"
     std::string volume_sha256; ///< of dims, type and decoded voxels; checked when a saved scene is rendered again (empty: unchecked)
     VolumeReadOptions reading; ///< how the volume's file is read
-    std::optional<TransferFunction> transfer; ///< absent: automatic
     Mode mode = Mode::path;
-    Shading shading = Shading::automatic;
-    double phase_g = 0;            ///< Henyey-Greenstein asymmetry, -1 < g < 1
-    double extinction = 0;         ///< at opacity 1 [1/mm]; 0: automatic, 512 / diagonal of the volume
-    int bounces = 8;               ///< greatest number of scattering events; 0: unlimited
     int width = 640, height = 640; ///< [pixels]
     int spp = 64;                  ///< samples per pixel
     int feature_samples = 4;       ///< 1 or 4 feature rays per pixel
     bool features = true;          ///< march the noise-free features
-    std::uint64_t seed = 0;
-    int view = 0; ///< turntable frame or view number: part of the random key
-    Camera camera;
     Light light;
     Background background;
-    std::optional<std::array<double, 6>> clip_box; ///< low xyz, high xyz as shares 0..1 of the volume along its index axes
-    std::optional<ClipPlane> clip_plane;
     double exposure = 0;            ///< PNG only [stops]
     std::string tonemap = "filmic"; ///< PNG only: one of tonemap_names
 };

@@ -99,7 +99,7 @@ Scene golden_scene(const std::string& name) {
 Frame render_golden(const std::string& name, std::vector<Device> devices, const RenderControl& control) {
     const Scene scene = golden_scene(name);
     const bool image = scene.light.environment == Light::Environment::image;
-    return Renderer(std::move(devices), golden_volume(), scene, image ? golden_environment() : EnvironmentTables{}).render(control);
+    return clvr::render(std::move(devices), golden_volume(), scene, image ? golden_environment() : EnvironmentTables{}, control);
 }
 
 Frame golden_noisy_frame() {
@@ -161,7 +161,7 @@ Frame golden_picture(Device device) {
     s.seed = 7;
     s.bounces = 2;
     s.phase_g = 0.25;
-    return Denoiser(device, tiny_network()).denoise(Renderer({device}, small_volume(), s).render());
+    return Denoiser(device, tiny_network()).denoise(clvr::render({device}, small_volume(), s));
 }
 
 } // namespace clvr::selftest

@@ -2,7 +2,7 @@
 // and numbers are made of whole numbers, so that they are the same on every host.
 #pragma once
 #include "host/denoise/model.hpp"
-#include "host/render/renderer.hpp"
+#include "host/render/session.hpp"
 #include "host/selftest/golden_values.hpp"
 
 namespace clvr::selftest {

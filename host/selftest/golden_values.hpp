@@ -1,5 +1,5 @@
 // The golden values: what every conforming device gives, in bits. The self-test, the tests and the conformance runs all read them here. A
-// change means that pictures change: made on purpose only, together with DESIGN.md or a default. To make them anew, run `clvr selftest` and
+// change means that pictures change: made on purpose only (tests/README.md, "Goldens"). To make them anew, run `clvr selftest` and
 // copy what it found.
 #pragma once
 #include <array>

@@ -2,7 +2,7 @@
 #pragma once
 #include "host/render/device_volume.hpp"
 #include "host/render/params.hpp"
-#include "host/render/renderer.hpp"
+#include "host/render/session.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -85,7 +85,7 @@ inline Voxels blob(int side) {
     });
 }
 
-/// The pieces that a Renderer puts together, within reach of a test. The scene names eye, target and transfer function.
+/// The pieces that a RenderSession puts together, within reach of a test. The scene names eye, target and transfer function.
 struct Stage {
     PreparedVolume volume;
     Scene scene;

@@ -16,7 +16,7 @@ Scene seen_from_afar(std::vector<TransferFunction::Point> points) {
     return s;
 }
 
-Frame render_on(Device& device, const PreparedVolume& volume, const Scene& scene) { return Renderer({device}, volume, scene).render(); }
+Frame render_on(Device& device, const PreparedVolume& volume, const Scene& scene) { return clvr::render({device}, volume, scene); }
 
 /// Within 4 standard errors and rounding.
 std::string compared(bool& ok, double found, double expected, double allowed, const char* what) {

@@ -84,9 +84,9 @@ Gradients::Gradients(const Device& device, const Model& model, Loss loss, const 
     hidden_gradient_ = planes(hidden_, "gradient of the hidden layer");
     upstream_ = device_.buffer(16 * forward.pixels() * static_cast<std::size_t>(levels_), "gradient of the levels");
     cell_gradient_ = device_.buffer(forward.cells().bytes(), "gradient of the grids");
-    device_.fill(cell_gradient_, 0); // as the cells: read in pairs
+    device_.fill(cell_gradient_, 0); // the cells are read in pairs, so the last pair reads one beyond the end
     lanes_ = device_.buffer(images * parameters_ * lanes * 4, "gradients by lane");
-    device_.fill(lanes_, 0); // matrices leave those of the weights alone
+    device_.fill(lanes_, 0); // matrix products do not write the lanes of the weights
     loss_lanes_ = device_.buffer(images * static_cast<std::size_t>(p.height) * lanes * 4, "losses by lane");
     row_losses_ = device_.buffer(images * static_cast<std::size_t>(p.height) * 4, "losses by row");
     if (with_bands_) columns_ = device_.buffer(images * column_bytes(p), "errors by column");
@@ -147,7 +147,7 @@ void Gradients::weight_gradients(NeuralGrid& forward, int images, const Buffer& 
     const auto count = static_cast<cl_uint>(parameters_);
     const auto weights = [&](Kernel& kernel, int in, int out, int block, const Buffer& from, const Buffer& gradient, std::size_t at) {
         const std::size_t jobs = static_cast<std::size_t>(out / block * in * kernel_);
-        // 16 work-items are half of what GPUs run at once: four jobs share a group where the kernel can.
+        // A job of 16 work-items fills half of a GPU's 32 lanes: four jobs share a group where the kernel allows it.
         const std::size_t wanted = width_ == 1 ? 64 : lane_items, together = std::max<std::size_t>(kernel.group(wanted).x / lane_items, 1);
         device_.launch(kernel, {lane_items, jobs, n}, {lane_items, together},
                        {4 * pixels * (in + out), 2 * pixels * in * out * kernel_ * kernel_}, forward.params(), from, gradient, lanes_,

@@ -1,4 +1,4 @@
-// The backward pass of NeuralGrid: from its result to the gradient of every parameter, each image apart.
+// The backward pass of NeuralGrid: from its result to the gradient of every parameter, for each image by itself.
 #pragma once
 #include "host/denoise/neural_grid.hpp"
 #include "host/train/matrix_layers.hpp"

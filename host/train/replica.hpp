@@ -23,7 +23,7 @@ public:
     Replica(const Device& device, const Model& model, const StepConfig& config);
 
     /// The next image: taken from `uploaded` (of the same context) where given, else uploaded while it fits. Null where the device lacks
-    /// it; find_gradients then reads the host's planes.
+    /// the room; find_gradients then reads the host's planes.
     std::shared_ptr<const Buffer> add_image(const TrainingImage& image, std::shared_ptr<const Buffer> uploaded);
 
     /// Makes the present parameters those of the next find_gradients().

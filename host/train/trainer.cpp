@@ -65,7 +65,7 @@ std::string configuration_of(const Model& model, const TrainerConfig& c, const s
                                {"opacity_weight", model.opacity_weight},
                                {"albedo_floor", static_cast<double>(model.albedo_floor)},
                                {"views", views}};
-    // Beside what a checkpoint of before these settings says.
+    // Only where they differ from the default, so that checkpoints made before these settings still match.
     if (c.steps > 0) all["steps"] = c.steps;
     if (!model.demodulation) all["demodulation"] = false;
     if (model.control_variate) all["control_variate"] = true;
@@ -127,7 +127,7 @@ struct Trainer::State {
         });
     }
 
-    /// Everything on disk, each file as a whole; the checkpoint last, so that it never claims what the others lack.
+    /// Writes every file, each as a whole; the checkpoint last, so that it never promises what the others lack.
     void save() {
         checkpoint.state = step.state();
         std::string csv = "epoch,loss,validation_psnr\n";
@@ -144,7 +144,7 @@ struct Trainer::State {
         write_checkpoint(checkpoint, step.model(), checkpoint_of(output));
     }
 
-    /// Adds the losses of the steps since the last time; the number of the first one that is NaN (or that left weights that are), or -1.
+    /// Adds the losses of the steps since the last call. Returns the first step whose loss or weights are not finite, or -1.
     std::int64_t collect(std::int64_t first_step, double& recent) {
         const std::vector<double> losses = step.take_losses();
         for (std::size_t k = 0; k < losses.size(); ++k) {
@@ -152,7 +152,7 @@ struct Trainer::State {
             checkpoint.loss_sum += losses[k];
             recent = losses[k];
         }
-        // Kernels turn NaN into numbers where they clamp, so a loss can look well over weights that are lost.
+        // Where kernels clamp, they turn NaN into numbers, so a loss can look sound though the weights are lost.
         const std::vector<float> weights = step.state().parameters;
         const bool lost = std::any_of(weights.begin(), weights.end(), [](float w) { return !std::isfinite(w); });
         return lost ? first_step + static_cast<std::int64_t>(losses.size()) : -1;
@@ -208,7 +208,7 @@ bool Trainer::run(const std::atomic<bool>& cancelled, const std::function<void(c
     const std::int64_t per_epoch = s.steps_per_epoch(), total = s.total_steps();
     std::int64_t at = s.step.state().step, collected = at;
     TrainerProgress p;
-    if (at >= total) s.save(); // finished before: its files are there again, even those that someone removed
+    if (at >= total) s.save(); // finished before: writes the files again, as some may have been removed
     for (int epoch = static_cast<int>(at / per_epoch); at < total; ++epoch) {
         const std::vector<Crop> crops = epoch_crops(c.seed, epoch, s.sizes, s.frames, c.patches_per_image, c.step.patch, c.augment);
         const std::int64_t count = std::min(per_epoch, total - epoch * per_epoch);

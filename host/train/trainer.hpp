@@ -13,7 +13,7 @@ namespace clvr {
 struct TrainerConfig {
     StepConfig step;
     int epochs = 200;
-    std::int64_t steps = 0;     ///< ends after so many, within an epoch if need be; 0: with the last epoch
+    std::int64_t steps = 0;     ///< ends after so many steps, if need be within an epoch; 0: after the last epoch
     int patches_per_image = 50; ///< drawn anew each epoch from each view
     double learning_rate = 1e-4;
     bool cosine = false; ///< the learning rate falls to 0 along half a cosine; else it is constant
@@ -34,13 +34,13 @@ struct TrainerProgress {
     double validation = 0;
 };
 
-/// Trains and keeps everything on disk: `output` holds the best model (by validation; the last one without), <output>.last the last one,
-/// <output>.checkpoint the state after each epoch (weights, moments, position, records, configuration), training_csv(output) a line an
-/// epoch. The state is the seed's alone: the same bits whether or not it was interrupted.
+/// Trains and keeps everything on disk: `output` holds the best model (by validation; without it the last), <output>.last the last one,
+/// <output>.checkpoint the state after each epoch (weights, moments, position, records, configuration), training_csv(output) a line for
+/// each epoch. The state depends on the seed alone: the same bits whether or not the training was interrupted.
 class Trainer {
 public:
-    /// Reads the frames. Several devices give the same files as one, also where they were others before `resume`. `resume`: goes on from
-    /// the checkpoint, which must be of the same configuration and data. Throws Error{input, memory}.
+    /// Reads the frames. Several devices give the same files as one, also when the devices differ from those before `resume`. `resume`
+    /// continues from the checkpoint, which must have the same configuration and data. Throws Error{input, memory}.
     Trainer(const std::vector<Device>& devices, const Model& model, const TrainerConfig& config, const std::vector<std::string>& folders,
             const std::string& validation_folder, const std::string& output, bool resume);
     Trainer(const Device& device, const Model& model, const TrainerConfig& config, const std::vector<std::string>& folders,

@@ -10,7 +10,7 @@ namespace clvr {
 
 namespace {
 
-/// Which device did a patch, and its row where that device has a context of its own.
+/// The device that did a patch, and the gradient where that device does not share the leader's context.
 struct PatchRow {
     std::size_t device = 0;
     std::vector<float> gradient;
@@ -19,8 +19,9 @@ struct PatchRow {
 
 } // namespace
 
-/// One device enqueues step after step. Several share a step's patches; the first one left, the leader, sums their gradients in patch
-/// order and takes the step, whose result the host then holds: should the leader fail, the next one begins from there.
+/// A single device enqueues step after step. Several devices share a step's patches: the first one that is left, the leader, sums their
+/// gradients in patch order and takes the step. The host then holds the result, so that the next device can continue from there should the
+/// leader fail.
 struct TrainingStep::State {
     Model start;
     StepConfig config;
@@ -57,7 +58,7 @@ struct TrainingStep::State {
         only().sum_patches(crops.size());
     }
 
-    /// Every device that is left finds gradients of patches as fast as it can. Notes who did which in `rows`.
+    /// All devices that are left share the patches. `rows` notes which device did which patch.
     void deal(const std::vector<Crop>& crops) {
         const float share = share_of(crops);
         rows.resize(crops.size());
@@ -106,8 +107,8 @@ struct TrainingStep::State {
         }
     }
 
-    /// The crops' gradient by all devices, summed on the leader, then finish(leader). Whenever the leader fails, all is done again by those
-    /// that are left.
+    /// Finds the crops' gradient on all devices, sums it on the leader, then calls finish(leader). Whenever the leader fails, all of this
+    /// is done again by the devices that are left.
     template <class Finish>
     void together(const std::vector<Crop>& crops, Finish&& finish) {
         for (;;) {

@@ -11,13 +11,12 @@
 
 namespace clvr {
 
-/// Of DESIGN.md "Loss": mean absolute error in a shifted gamma (the default), in SPEC's clipped gamma, symmetric relative error |a-b| /
-/// (|a|+|b|+0.01), (a-b)^2 / (b^2+0.01), the noise-to-noise loss (a-b)^2 / (sg(a)+0.01)^2 against a noisy target, mean squared error in
-/// the shifted gamma, and that with 4 times the squared band of its errors: the mean of each 8x8 pixels about the mean of 32x32 (mottle).
+/// How far a result is from its target; the formulas are in kernels/denoise/README.md, "Loss". The last one also punishes errors of the
+/// size of blotches, which eyes see as mottle.
 enum class Loss { shifted_gamma, reference, smape, relative_l2, noisy, shifted_gamma_l2, shifted_gamma_bands };
 
-/// A patch: of which image (as add_image numbered it), its top left pixel, and one of the 8 dihedral transforms as SPEC section 9 numbers
-/// them.
+/// A patch: its image (the number that add_image gave), its top left pixel, and one of the 8 dihedral transforms, numbered as in
+/// kernels/denoise/README.md, "Training".
 struct Crop {
     int image = 0, x = 0, y = 0, orientation = 0;
 };
@@ -61,7 +60,7 @@ public:
     /// One step at the given learning rate over any number of crops up to `batch` (the mean is over those given). One device alone only
     /// enqueues it: the loss comes later.
     void step(const std::vector<Crop>& crops, double learning_rate);
-    /// The mean loss of each step since the last call, in order; waits for them. NaN where it was.
+    /// The mean loss of each step since the last call, in order; NaN where it was NaN. Waits for the steps.
     std::vector<double> take_losses();
     /// The loss and gradient (order of Model::flat) of crops without a step.
     double gradient(const std::vector<Crop>& crops, std::vector<float>& gradient);

@@ -12,32 +12,7 @@
 namespace clvr {
 namespace {
 
-/// Which bricks hold an interpolation base that a visible cell can ask for: its own, with a reach of one voxel all around.
-std::vector<char> needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout) {
-    std::vector<char> needed(layout.offset.size());
-    const auto bricks_of_cell = [&](int cell, int axis) {
-        const int first = cell << grid.log2_edge, last_base = std::max(layout.dims[axis] - 2, 0);
-        return std::pair{std::max(first - 1, 0) >> layout.log2_edge,
-                         std::min(first + (1 << grid.log2_edge), last_base) >> layout.log2_edge};
-    };
-    const float* majorant = cell_majorants.data();
-    for (int cell_z = 0; cell_z < grid.cells[2]; ++cell_z)
-        for (int cell_y = 0; cell_y < grid.cells[1]; ++cell_y)
-            for (int cell_x = 0; cell_x < grid.cells[0]; ++cell_x) {
-                if (!(*majorant++ > 0)) continue;
-                const auto [x0, x1] = bricks_of_cell(cell_x, 0);
-                const auto [y0, y1] = bricks_of_cell(cell_y, 1);
-                const auto [z0, z1] = bricks_of_cell(cell_z, 2);
-                for (int z = z0; z <= z1; ++z)
-                    for (int y = y0; y <= y1; ++y) {
-                        char* row = needed.data() + (static_cast<std::size_t>(z) * layout.bricks[1] + y) * layout.bricks[0];
-                        std::fill(row + x0, row + x1 + 1, char{1});
-                    }
-            }
-    return needed;
-}
-
-/// Deals the stored bricks, in their order, to pools of at most `capacity` voxels; returns how many pools that takes.
+/// Puts the stored bricks, in their order, into pools of at most `capacity` voxels; returns how many pools that takes.
 std::size_t deal(BrickLayout& layout, std::size_t capacity, std::size_t bytes_per_voxel) {
     layout.pool_bytes.assign(1, 0);
     std::size_t filled = 0;
@@ -102,6 +77,30 @@ int brick_log2_edge(const Int3& dims) {
     return thin && large ? 8 : 5;
 }
 
+std::vector<char> needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout) {
+    std::vector<char> needed(layout.offset.size());
+    const auto bricks_of_cell = [&](int cell, int axis) {
+        const int first = cell << grid.log2_edge, last_base = std::max(layout.dims[axis] - 2, 0);
+        return std::pair{std::max(first - 1, 0) >> layout.log2_edge,
+                         std::min(first + (1 << grid.log2_edge), last_base) >> layout.log2_edge};
+    };
+    const float* majorant = cell_majorants.data();
+    for (int cell_z = 0; cell_z < grid.cells[2]; ++cell_z)
+        for (int cell_y = 0; cell_y < grid.cells[1]; ++cell_y)
+            for (int cell_x = 0; cell_x < grid.cells[0]; ++cell_x) {
+                if (!(*majorant++ > 0)) continue;
+                const auto [x0, x1] = bricks_of_cell(cell_x, 0);
+                const auto [y0, y1] = bricks_of_cell(cell_y, 1);
+                const auto [z0, z1] = bricks_of_cell(cell_z, 2);
+                for (int z = z0; z <= z1; ++z)
+                    for (int y = y0; y <= y1; ++y) {
+                        char* row = needed.data() + (static_cast<std::size_t>(z) * layout.bricks[1] + y) * layout.bricks[0];
+                        std::fill(row + x0, row + x1 + 1, char{1});
+                    }
+            }
+    return needed;
+}
+
 BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
                          std::size_t max_pool_bytes) {
     BrickLayout layout;
@@ -134,41 +133,38 @@ BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::v
     const std::size_t used = deal(layout, capacity, bytes);
     if (used > 8) throw too_big();
     while (layout.pools < static_cast<int>(used)) layout.pools *= 2;
-    // Dealt again evenly: a pool that closes holds more than total / pools, so no more pools are taken.
+    // Once more, evenly: a pool that is closed holds more than total / pools, so no further pool is needed.
     deal(layout, std::min(capacity, total / layout.pools + largest), bytes);
     layout.pool_bytes.resize(layout.pools, 0);
     return layout;
 }
 
-void pack_pool(const Voxels& v, const BrickLayout& layout, int pool, std::size_t piece_bytes, const PackSink& sink) {
+void pack_bricks(const Voxels& v, const BrickLayout& layout, const std::vector<std::size_t>& bricks, std::size_t piece_bytes,
+                 const PackSink& sink) {
     const std::size_t bytes = voxel_bytes(v.type);
-    std::vector<std::size_t> bricks; // of this piece, consecutive in the pool
+    const auto begin = [&](std::size_t i) { return layout.offset[bricks[i]] * bytes; };
+    const auto end = [&](std::size_t i) { return begin(i) + layout.brick_voxels(bricks[i]) * bytes; };
     std::vector<unsigned char> piece;
-    std::size_t piece_offset = 0, piece_size = 0;
-    const auto flush = [&] {
-        if (bricks.empty()) return;
-        piece.resize(piece_size);
-        for_slabs(static_cast<int>(bricks.size()), [&](int first, int last) {
+    for (std::size_t first = 0, last; first < bricks.size(); first = last) { // a run of bricks that follow each other in the pool
+        for (last = first + 1; last < bricks.size() && begin(last) == end(last - 1) && end(last) - begin(first) <= piece_bytes;) ++last;
+        const std::size_t from = begin(first), size = end(last - 1) - from;
+        piece.resize(size);
+        for_slabs(static_cast<int>(last - first), [&](int low, int high) {
             with_voxel_type(v.type, [&](auto sample) {
                 using T = decltype(sample);
-                for (int i = first; i < last; ++i)
-                    pack_brick(v, layout, bricks[i], reinterpret_cast<T*>(piece.data() + layout.offset[bricks[i]] * bytes - piece_offset));
+                for (std::size_t i = first + static_cast<std::size_t>(low); i < first + static_cast<std::size_t>(high); ++i)
+                    pack_brick(v, layout, bricks[i], reinterpret_cast<T*>(piece.data() + begin(i) - from));
             });
         });
-        for (std::size_t at = 0; at < piece_size; at += piece_bytes)
-            sink(piece.data() + at, std::min(piece_bytes, piece_size - at), piece_offset + at);
-        piece_offset += piece_size;
-        piece_size = 0;
-        bricks.clear();
-    };
-    for (std::size_t b = 0; b < layout.offset.size(); ++b) {
-        if (layout.offset[b] == BrickLayout::absent || layout.pool[b] != static_cast<std::uint32_t>(pool)) continue;
-        const std::size_t size = layout.brick_voxels(b) * bytes;
-        if (piece_size + size > piece_bytes) flush();
-        bricks.push_back(b);
-        piece_size += size;
+        for (std::size_t at = 0; at < size; at += piece_bytes) sink(piece.data() + at, std::min(piece_bytes, size - at), from + at);
     }
-    flush();
+}
+
+void pack_pool(const Voxels& v, const BrickLayout& layout, int pool, std::size_t piece_bytes, const PackSink& sink) {
+    std::vector<std::size_t> bricks;
+    for (std::size_t b = 0; b < layout.offset.size(); ++b)
+        if (layout.offset[b] != BrickLayout::absent && layout.pool[b] == static_cast<std::uint32_t>(pool)) bricks.push_back(b);
+    pack_bricks(v, layout, bricks, piece_bytes, sink);
 }
 
 } // namespace clvr

@@ -9,10 +9,11 @@
 
 namespace clvr {
 
-/// Interpolation at index position p uses voxels i and i+1 with i = clamp(floor(p), 0, max(n-2, 0)) on each axis (one voxel: twice the
-/// same). A majorant cell (edge 16 voxels, a power of two coarser only by the rule below) holds the positions whose i >> log2(edge) is the
-/// cell; the outermost cells reach out to the border of the volume. So cell c needs voxels edge*c .. edge*c+edge, and `cells = (max(n-2,0)
-/// >> log2) + 1`. Belongs to the scene: the random numbers depend on it. Independent of brick edge, residency and device.
+/// Interpolation at index position p uses the voxels i and i+1 with i = clamp(floor(p), 0, max(n-2, 0)) on each axis; an axis of one voxel
+/// uses it twice. A majorant cell holds the positions whose i >> log2(edge) is the cell; the outermost cells reach out to the border of the
+/// volume. So cell c needs the voxels edge*c .. edge*c+edge, and there are (max(n-2,0) >> log2) + 1 cells. The edge is 16 voxels, or a
+/// power of two more (majorant_log2_edge). The grid belongs to the scene, as the random numbers depend on it; it does not depend on brick
+/// edge, residency or device.
 struct MajorantGrid {
     int log2_edge = 4;
     Int3 cells{1, 1, 1};
@@ -26,9 +27,9 @@ int majorant_log2_edge(const Int3& dims);
 /// Ranges from the voxels (two threads; a pass over the data).
 MajorantGrid majorant_grid(const Voxels& v);
 
-/// The table index of a stored value, with the very operations and constants of the kernels: it ascends with the value even after rounding,
-/// so the index of an interpolated value lies between those of its cell's least and greatest one. The subtraction comes first: a volume's
-/// lowest value, where tables often begin, then has exactly the index 0 and air stays empty.
+/// The table index of a stored value, with exactly the operations and constants of the kernels. It rises with the value even after
+/// rounding, so the index of an interpolated value lies between those of its cell's least and greatest value. The subtraction comes first:
+/// a volume's lowest value, where tables often begin, then has exactly the index 0, and air stays empty.
 struct TableIndex {
     explicit TableIndex(const TransferTable& table)
         : first(static_cast<float>(table.first)), scale(static_cast<float>(table.index_scale())) {}
@@ -44,12 +45,11 @@ struct TableIndex {
 /// Milliseconds: reads ranges, not voxels.
 std::vector<float> majorants(const MajorantGrid& grid, const TransferTable& table);
 
-/// Where each brick lies. Brick b of an axis serves the bases (lower voxels of an interpolation) edge*b .. edge*b+edge-1 and holds all that
-/// their interpolation and gradient touch: voxels edge*b-1 .. edge*b+edge+1, an apron of one voxel below and two above, cropped to the
-/// bases that the volume has; beyond the volume's border its border voxels repeat. Rows and slices are packed, x fastest. So a position's
-/// whole 4x4x4 neighbourhood lies in one brick. Edge 32 stores at most (35/32)^3 = 1.31 times the voxels; an axis of n < 16 voxels adds a
-/// factor of (n+2)/n instead,
-/// so that thin volumes take larger bricks (brick_log2_edge).
+/// Where each brick lies. Brick b of an axis serves the bases (lower voxels of an interpolation) edge*b .. edge*b+edge-1. It holds all that
+/// their interpolation and gradient read: the voxels edge*b-1 .. edge*b+edge+1, an apron of one voxel below and two above, cropped to the
+/// bases that the volume has. Beyond the border of the volume its border voxels repeat. Rows and slices are packed, x fastest. So the whole
+/// 4x4x4 neighbourhood of a position lies in one brick. Edge 32 stores at most (35/32)^3 = 1.31 times the voxels; an axis of n < 16 voxels
+/// costs a factor of (n+2)/n instead, so thin volumes take larger bricks (brick_log2_edge).
 struct BrickLayout {
     int log2_edge = 4;
     Int3 bricks{1, 1, 1};
@@ -67,19 +67,25 @@ struct BrickLayout {
     std::size_t brick_voxels(std::size_t brick) const;
 };
 
-/// Edge of bricks where nothing else is asked: 32, or 256 in volumes of 4 Mvoxel and more with an axis of fewer than 16, so that they too
-/// store at most 1.35 times their voxels (down to an axis of 7).
+/// The usual edge of bricks: 32, or 256 for volumes of at least 4 Mvoxel with an axis below 16 voxels, so that they, too, store at most
+/// 1.35 times their voxels (down to an axis of 7).
 int brick_log2_edge(const Int3& dims);
 
-/// Lays out the bricks that are needed when cells with majorant > 0 are visible: those that a sample in such a cell, or a gradient tap one
-/// voxel away from it, can touch. The reach is a full voxel all around, so that a position that rounding puts on the far side of a cell's
-/// border is safe. `log2_edge` is 3 to 8. Pools are at most `max_pool_bytes` each. Throws Error{memory} when 8 pools do not hold it.
+/// Which bricks of a layout are needed when cells with majorant > 0 are visible: those that a sample in such a cell, or a gradient tap one
+/// voxel away, can read. One more voxel all around keeps a position safe that rounding puts on the far side of a cell's border.
+std::vector<char> needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout);
+
+/// Lays out the needed_bricks. `log2_edge` is 3 to 8. Pools are at most `max_pool_bytes` each. Throws Error{memory} when 8 pools do not
+/// hold it.
 BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
                          std::size_t max_pool_bytes);
 
-/// Copies one pool's bricks out of the voxels, in pieces of at most `piece_bytes`: calls sink(bytes, size, offset_bytes_in_pool) so that
-/// the host never holds a second copy of the volume.
+/// Copies bricks out of the voxels, in pieces of at most `piece_bytes`: calls sink(bytes, size, offset_bytes_in_pool) so that the host
+/// never holds a second copy of the volume. `bricks`: of one pool, in ascending order.
 using PackSink = std::function<void(const unsigned char* bytes, std::size_t size, std::size_t offset)>;
+void pack_bricks(const Voxels& v, const BrickLayout& layout, const std::vector<std::size_t>& bricks, std::size_t piece_bytes,
+                 const PackSink& sink);
+/// All bricks of a pool.
 void pack_pool(const Voxels& v, const BrickLayout& layout, int pool, std::size_t piece_bytes, const PackSink& sink);
 
 /// The box of index positions, inside [-0.5, n-0.5], that holds every voxel whose opacity is above `threshold` with its trilinear

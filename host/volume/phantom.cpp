@@ -19,7 +19,7 @@ struct PartLists {
     Buffer start, list;
 };
 
-/// Whether the part has an effect is decided by the kernel for each voxel; here it only must not be missed.
+/// The kernel decides for each voxel whether the part has an effect; here it only must not be missed.
 PartLists list_parts(Device& device, const MadeVolume& made, const Int3& first_voxel, const Int3& cells, const Double3& spacing) {
     std::vector<std::vector<uint>> of(static_cast<std::size_t>(cells[0]) * cells[1] * cells[2] * made.bodies.size());
     uint part_index = 0;
@@ -131,7 +131,7 @@ Voxels make_phantom(Device& device, const std::string& name, const PhantomOption
         return float4{static_cast<float>(xyz[0]), static_cast<float>(xyz[1]), static_cast<float>(xyz[2]), static_cast<float>(w)};
     };
     const Double3& spacing = v.geometry.spacing;
-    // Within the distances that the bodies keep: else what lies beyond would be painted, too.
+    // Less than the distances that the bodies keep, else what lies beyond would be painted, too.
     double ramp_mm = std::min(1.6 * *std::max_element(spacing.begin(), spacing.end()), 4.0);
     for (const MadeBody& body : made.bodies) ramp_mm = std::min(ramp_mm, 2.0 * static_cast<double>(body.far));
     const auto cells_for = [](int voxels, int axis) { return (voxels + cell_voxels[axis] - 1) / cell_voxels[axis]; };

@@ -43,9 +43,10 @@ void validate(const TransferFunction& tf, const std::string& where);
 /// make a table of small width around it. Throws Error{input} for an invalid transfer function.
 TransferTable tabulate(const TransferFunction& tf, const Voxels& v, double low, double high);
 
-/// Reads DESIGN's JSON or a ParaView colour-map JSON. `where` names the source in errors. Throws Error{input}.
+/// Reads clvr's JSON (host/README.md, "Transfer function") or a ParaView colour-map JSON. `where` names the source in errors. Throws
+/// Error{input}.
 TransferFunction parse_transfer_function(const std::string& json_text, const std::string& where);
-/// DESIGN's JSON, linear colours, every number with the digits that read back to the same bits.
+/// clvr's JSON, linear colours, every number with the digits that read back to the same bits.
 std::string to_json(const TransferFunction& tf);
 
 /// Names and one-line descriptions of the built-in presets (ct-bone, ct-soft-tissue, ct-angio, ct-lung, mr, generic, ...).

@@ -28,11 +28,11 @@ T at(const Stops<T>& stops, double t) {
     return lerp(a, b, std::clamp((t - t0) / (t1 - t0), 0.0, 1.0));
 }
 
-// Albedos are lighter and paler than the colours that they give: light that scatters several times takes them up several times.
+// Albedos are lighter and paler than the colours that one sees: light that scatters several times is coloured several times.
 // Skin, bark, pottery: reddish where it is thin or light, ivory where it is dense.
 const Stops<Color> solid_colors{
     {0, {0.95, 0.77, 0.65}}, {0.25, {0.95, 0.79, 0.66}}, {0.5, {0.96, 0.87, 0.75}}, {0.8, {0.98, 0.95, 0.90}}, {1, {0.99, 0.98, 0.96}}};
-// Vessels and what else was cut out of its surroundings.
+// Vessels, and other things that were cut out of their surroundings.
 const Stops<Color> cut_colors{{0, {0.92, 0.55, 0.47}}, {0.3, {0.94, 0.64, 0.54}}, {0.6, {0.96, 0.80, 0.68}}, {1, {0.98, 0.94, 0.88}}};
 // Fields that fade out: a cool haze around a glowing core.
 const Stops<Color> field_colors{

@@ -39,7 +39,7 @@ double visible_width(const TransferTable& table, double low, double high) {
     const double entry = (table.last - table.first) / (transfer_entries - 1);
     const double from = std::max(table.first + entry * (first - table.opacity.begin() - 1.0), table.first);
     const double to = std::min(table.first + entry * (last - table.opacity.begin() + 1.0), table.last);
-    // What the end points hold counts to see whether anything is visible at all, but makes nothing wider.
+    // Values beyond an end point can be visible, too. They count for whether anything is visible, not for the width.
     const bool below = table.opacity.front() > 0 && low<table.first, above = table.opacity.back()> 0 && high > table.last;
     return below || above || (from <= high && to >= low) ? to - from : 0;
 }
@@ -79,14 +79,14 @@ TransferTable tabulate(const TransferFunction& tf, const Voxels& v, double low, 
             for (int c = 0; c < 3; ++c) here.color[c] = lerp(a.color[c], b.color[c], t);
             here.opacity = lerp(a.opacity, b.opacity, t);
         }
-        if (e == 0) here = points.front(); // what is held outside: a step at an end lies inside the table
+        if (e == 0) here = points.front(); // the value that holds outside: a step at an end lies inside the table
         if (e == transfer_entries - 1) here = points.back();
         table.opacity[e] = static_cast<float>(here.opacity);
         for (int c = 0; c < 3; ++c) table.color[4 * e + c] = static_cast<float>(here.color[c]);
     }
     table.visible_width = visible_width(table, low, high);
     if (one_value && table.visible_width > 0)
-        table.visible_width = std::max(table.visible_width, high - low); // what is held reaches to the ends
+        table.visible_width = std::max(table.visible_width, high - low); // values that hold outside reach to the volume's ends
     return table;
 }
 

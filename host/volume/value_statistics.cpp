@@ -141,7 +141,7 @@ ValueSide side(const ValueCounts& counts, std::size_t background, std::size_t en
         all[b] += static_cast<double>(counts.all[i]);
         border[b] += static_cast<double>(counts.border[i]);
     }
-    // Background is spread evenly over the volume or gathers at the border; structure keeps away from it.
+    // Background is spread evenly over the volume or gathers at its border; structure stays away from the border.
     const double border_share = static_cast<double>(total(counts.border)) / static_cast<double>(total(counts.all));
     const int limit = otsu(all);
     int threshold = 1;
@@ -192,7 +192,7 @@ ValueShape value_shape(const ValueCounts& counts) {
     shape.high = counts.value(double(last));
     std::size_t background = std::clamp(mode(counts.border), first, last);
 
-    // A border without one prevailing value is structure that was cut: then the low end passes for the background.
+    // A border without a prevailing value shows structure that was cut off: then the low end is taken as the background.
     const std::size_t reach = std::max<std::size_t>((last - first) / 20, 1);
     double near = 0;
     for (std::size_t i = background - std::min(background, reach); i <= background + reach && i < counts.bins(); ++i)
@@ -202,7 +202,7 @@ ValueShape value_shape(const ValueCounts& counts) {
     shape.background = counts.value(double(background));
     shape.above = side(counts, background, last, 1);
     shape.below = side(counts, background, first, -1);
-    // A short side is the noise around the background.
+    // A side with a small range is only the noise around the background.
     const double range = shape.high - shape.low;
     shape.above.active = shape.above.active && shape.high - shape.background >= 0.2 * range;
     shape.below.active = shape.below.active && shape.background - shape.low >= 0.2 * range;

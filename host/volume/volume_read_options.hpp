@@ -1,4 +1,4 @@
-// How to read a volume file: what the user says of it.
+// How to read a volume file: what the user says about it.
 #pragma once
 #include "host/volume/vec.hpp"
 
@@ -7,7 +7,7 @@
 
 namespace clvr {
 
-/// How to read a file that holds several volumes, or does not say it all by itself.
+/// How to read a file that holds several volumes, or that does not say everything itself.
 struct VolumeReadOptions {
     int frame = 0;                  ///< which time of a series
     std::optional<int> channel;     ///< which channel of a file with several; absent: the first, and the reader says so

@@ -1,5 +1,5 @@
-// A part of a source image, turned by one of the 8 dihedral transforms, as the network and the grids read it: network input (SPEC.md section 2),
-// colour to splat (demodulated radiance, weight), what multiplies the result again, target, known light. A work-item takes CLVR_WIDTH pixels of a row.
+// A part of a source image, turned by one of the 8 dihedral transforms, as the network and the grids read it (kernels/denoise/README.md, "Input"): the network's
+// input, the colour to splat (demodulated radiance, weight), what the result is multiplied with, target, known light. A work-item takes CLVR_WIDTH pixels of a row.
 #include "lib/pixels.clh"
 #include "lib/tonemap.clh"
 

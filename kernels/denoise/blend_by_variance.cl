@@ -1,8 +1,9 @@
-// Back towards the noisy input where that has converged: what the denoiser changed beyond the input's own noise is its bias. With the sums of blend_sums over a
-// window of 21x21 pixels, bias^2 = max(0, sum e - 2 sqrt(sum e^2)), what exceeds twice its standard error; result = out + d bias^2 / (bias^2 + sum v), the
-// shrinkage with the least mean squared error (the positive-part James-Stein form). The variance of few samples is itself noise: over 7x7 pixels, with 1.5
-// times the variance in place of the standard error, bonsai at 2 samples per pixel lost 0.6 dB; now 2 lose nothing and 64 gain 1 dB over the network alone.
-// n/(n-1) times the variance in its place does as well at few samples and 0.1 to 0.5 dB better at 64, but gives ten times as many pixels noise back at 4.
+// Takes the result back towards the noisy input where that has converged: a change by the denoiser beyond the input's own noise is its bias. With the sums of
+// blend_sums.cl over a window of 21x21 pixels, bias^2 = max(0, sum e - 2 sqrt(sum e^2)), what exceeds twice its standard error; result = out + d bias^2 /
+// (bias^2 + sum v), the shrinkage with the least mean squared error (the positive-part James-Stein form). The variance of few samples is itself noisy: over
+// 7x7 pixels, with 1.5 times the variance in place of the standard error, bonsai at 2 samples per pixel lost 0.6 dB; now 2 samples lose nothing, and 64 gain
+// 1 dB over the network alone. With n/(n-1) times the variance in its place few samples do as well and 64 gain a further 0.1 to 0.5 dB, but at 4 samples ten
+// times as many pixels get noise back.
 #include "shared/denoise_params.h"
 
 // `sums`: [rows][width] of blend_sums; `noisy`, `out`: [rows][width]. The rows of the result begin at `first`; where the rows end, windows are smaller.

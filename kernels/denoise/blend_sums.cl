@@ -1,5 +1,5 @@
-// What blend_by_variance needs of the pixels beside a pixel, summed over 21 columns. With d = noisy - out and v the input's variance, e = d^2 - v is a pixel's
-// sign of bias: without bias its mean is 0.
+// What blend_by_variance.cl needs of the pixels around a pixel, summed over 21 columns. With d = noisy - out and v the input's variance, e = d^2 - v shows
+// bias: without bias its mean is 0.
 #include "shared/denoise_params.h"
 
 // `noisy`, `variance`, `out`: [rows][width] of one colour; sums: [rows][width] of (e, e^2, v, 0), over fewer columns at the picture's sides.

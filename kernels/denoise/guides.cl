@@ -1,4 +1,5 @@
-// GuideNet's output, CLVR_WIDTH pixels at once: convolution of the hidden layer, then the sigmoid: a guide a level, then the blending weights (SPEC.md section 3).
+// GuideNet's output (kernels/denoise/README.md, "Network"), CLVR_WIDTH pixels at once: convolution of the hidden layer, then the sigmoid. It gives a guide for
+// each level, then the blending weights.
 #include "lib/activation.clh"
 #include "lib/convolution.clh"
 

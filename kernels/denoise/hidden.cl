@@ -1,4 +1,4 @@
-// GuideNet's hidden layer, CLVR_WIDTH pixels at once: convolution of the network's input, then leaky ReLU with slope 0.2 (SPEC.md section 3).
+// GuideNet's hidden layer, CLVR_WIDTH pixels at once: convolution of the network's input, then leaky ReLU with slope 0.2 (kernels/denoise/README.md, "Network").
 #include "lib/activation.clh"
 #include "lib/convolution.clh"
 

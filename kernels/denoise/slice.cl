@@ -1,5 +1,5 @@
-// Slices the grids where the guides say, blends the levels, multiplies albedo and opacity back (SPEC.md sections 6 and 7) and adds the known light. A work-item takes
-// CLVR_WIDTH pixels of a row.
+// Slices the grids where the guides say, blends the levels, multiplies albedo and opacity back and adds the known light (kernels/denoise/README.md, "Slice" and
+// "Blend"). A work-item takes CLVR_WIDTH pixels of a row.
 #include "lib/grid.clh"
 #include "lib/pixels.clh"
 

@@ -1,4 +1,4 @@
-// Splats pixels into a bilateral grid with tent weights, the tent filter with it (SPEC.md sections 5 and 12). A work-item gathers CLVR_BINS cells of one
+// Splats pixels into a bilateral grid with tent weights, which are its filter, too (kernels/denoise/README.md, "Splat"). A work-item gathers CLVR_BINS cells of one
 // grid column from the four blocks of pixels around it, in the order 00 01 10 11, each by rows: the same sums for every shape, no atomics. Cells
 // and weights are found for CLVR_WIDTH pixels at once. On PoCL a whole column a work-item is fastest, on an H100 eight cells (1.7 x as fast as one): neighbouring
 // work-items then read the same pixels and write neighbouring cells. Global: x = columns * ceil(depth / CLVR_BINS), y = rows, z = images.
@@ -14,7 +14,7 @@
 #define CLVR_SUMS 0
 #endif
 
-// Colours (xyz) and weights (w) of the pixels go where plane `level_number` of the `planes` guides says. Image n's pixels are image first + n of
+// Colours (xyz) and weights (w) of the pixels go where plane `level_number` of the `planes` guides says. Image n's pixels are image first_image + n of
 // `splatted`.
 __kernel void splat(__constant DenoiseParams* p, int level_number, int planes, __global const float* guides, __global const float4* splatted,
                     int first_image, __global float4* cells) {
@@ -25,7 +25,7 @@ __kernel void splat(__constant DenoiseParams* p, int level_number, int planes, _
     guides += plane_start(p, n, planes, level_number);
     splatted += (size_t)(first_image + n) * (size_t)(p->width * p->height);
 
-    float4 sums[CLVR_BINS + 2], *sum = sums + 1; // a cell more at either end, for what is dropped
+    float4 sums[CLVR_BINS + 2], *sum = sums + 1; // one cell more at either end, for weights that are dropped
     for (int k = 0; k < CLVR_BINS + 2; ++k) sums[k] = (float4)(0.0f);
     int cell = level->pixels, half_cell = cell / 2;
     for (int quarter = 0; quarter < 4; ++quarter) {

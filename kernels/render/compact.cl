@@ -1,5 +1,5 @@
-// Lists the paths that go on and those with a light sample. One work-item a run of CLVR_RUN entries, one atomic add a list: the order of runs is
-// free because every path is computed alone.
+// Lists the paths that go on and those with a light sample. One work-item takes a run of CLVR_RUN entries, with one atomic add per list. The runs may come in
+// any order, because every path is computed by itself.
 #ifndef CLVR_RUN
 #define CLVR_RUN 64
 #endif

@@ -1,6 +1,6 @@
 // Direct light of the features, without noise: CLVR_KEYS lights of one direction each by a march towards them, the rest from the grid of sky light. How much
-// of a light arrives is looked up at one point of each ray that march summed: at a quantile of its weight that differs from ray to ray of a pixel, between the
-// samples. (Picked among samples, it would be another one for every small change.) One work-item a packet of pixels.
+// of a light arrives is looked up at one point of each ray that march.cl summed: where the ray's weight passes a quantile, which differs between the rays of
+// a pixel. The point may lie between two samples; a choice among the samples would jump with every small change. One work-item a packet of pixels.
 #include "lib/feature_pixels.clh"
 #include "lib/harmonics.clh"
 #include "lib/light_sums.clh"
@@ -12,7 +12,7 @@ typedef struct {
     __global const float4* sky_light; // [corners * 9] (volume/sky_light.cl)
 } DirectLight;
 
-// Steps of `step` before they double, in the march towards a key: shadows that are near are sharp.
+// Number of steps before the step doubles, in the march towards a key: near shadows are sharp.
 #define NEAR_STEPS 8
 
 // Transmittance from index position p towards the unit world direction, by midpoints.
@@ -106,7 +106,7 @@ static inline void add_direct_light(const LightSums* s, __global const float* ke
         *by_key = along(*by_key, product(load_keyed(keyed, stride, k), irradiance), (vfloat)(1.0f));
     }
 
-    // A cosine; times `layer`, as a ray that is not stopped crosses less.
+    // A cosine; times `layer`, as a ray that is not stopped has crossed less.
     LayerIntegrals i = layer_integrals(v_max(-inner3(normal, dir), (vfloat)(0.0f)) * layer);
     Vec3 p = along(from, outward, layer);
     float place[3][CLVR_WIDTH], out[3][CLVR_WIDTH], n[3][CLVR_WIDTH], d[3][CLVR_WIDTH], integral[4][CLVR_WIDTH], front[CLVR_WIDTH], sharp[CLVR_WIDTH];

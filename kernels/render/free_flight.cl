@@ -2,7 +2,7 @@
 #include "shared/render_params.h"
 #include "lib/packet.clh"
 
-// Where the flights ended, of the lanes that fly no more.
+// Stores where the flight ended, for the lanes whose flight has ended.
 static inline void store_ends(Flights* f, vmask collided, __global float4* origin) {
     Vec3 p = along(f->walk.ray.o, f->walk.ray.d, f->walk.t); // not stop_position: in the half voxel at the volume's border that is another point
     float x[CLVR_WIDTH], y[CLVR_WIDTH], z[CLVR_WIDTH];

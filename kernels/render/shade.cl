@@ -19,7 +19,7 @@ __kernel void shade(VOLUME_ARGS, LIGHT_ARGS, __global const float* lobe, PATH_AR
     state[entry] = 0u;
     float4 at = origin[path], sum = radiance[path], way = heading[path];
     Vec3 dir = vec3_of(way), throughput = vec3_of(weight[path]);
-    if (at.w < 0.0f) { // a camera ray sees no light: the background is laid under the picture at the end
+    if (at.w < 0.0f) { // a camera ray sees no light: the background is added below the picture at the end
         if (bounce > 0) {
             float density;
             Vec3 met = product(throughput, light_radiance(&light, dir, &density));

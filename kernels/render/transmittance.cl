@@ -3,7 +3,7 @@
 #include "shared/render_params.h"
 #include "lib/packet.clh"
 
-// Adds what of their light arrived, in the lanes that fly no more.
+// Adds the light that arrived, for the lanes whose flight has ended.
 static inline void add_light(Flights* f, vfloat transmitted, __global const float4* shadow_light, __global float4* radiance) {
     float share[CLVR_WIDTH];
     int to[CLVR_WIDTH], ended[CLVR_WIDTH];
@@ -35,7 +35,7 @@ __kernel void transmittance(VOLUME_ARGS, __constant RenderParams* render, PATH_A
         transmitted = v_select(f.flying, transmitted * passed, transmitted);
         vmask weak = v_lt(transmitted, (vfloat)(0.0625f)) & f.flying;
         vmask ends = (weak & v_lt(f.choice, (vfloat)(0.5f))) | v_le(transmitted, (vfloat)(0.0f));
-        // fma: twice a product is the sum of two, which a compiler would fuse with the product.
+        // fma: a compiler makes a sum of "times 2", and would fuse it with the product before it.
         transmitted = v_select(weak, v_select(ends, (vfloat)(0.0f), fma(transmitted, (vfloat)(2.0f), (vfloat)(0.0f))), transmitted);
         f.flying &= v_not(ends);
         keep_choice(&f, (vfloat)(0.5f), (vfloat)(1.0f), weak & f.flying);

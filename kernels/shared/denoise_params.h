@@ -5,7 +5,7 @@
 CLVR_SHARED_BEGIN
 
 #define CLVR_LEVELS_MAX 8
-#define CLVR_BLEND_RADIUS 10 ///< of the window that blending back to the noisy input sums over [pixels]
+#define CLVR_BLEND_RADIUS 10 ///< of the window of kernels/denoise/blend_by_variance.cl [pixels]
 #define CLVR_BAND_BLOCK 8    ///< of the loss's blocks (train/bands.cl) [pixels]
 #define CLVR_BAND_GROUP 4    ///< of the blocks whose mean is taken off [blocks]
 #define CLVR_BAND_WEIGHT 4.0f

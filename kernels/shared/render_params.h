@@ -25,7 +25,7 @@ typedef struct RenderParams {
     float phase_g;                             ///< Henyey-Greenstein asymmetry
     float step;                                ///< of the march lattice [mm]
     float depth_near, depth_scale;             ///< depth feature = (t - near) * scale
-    int mode;                                  ///< of the march: 0 features, 1 dvr, 2 mip
+    int pad;
 } RenderParams;
 CLVR_CHECK_SIZE(RenderParams, 208);
 

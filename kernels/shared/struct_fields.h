@@ -46,7 +46,7 @@
     CLVR_FIELD(RenderParams, step)                                                                                                         \
     CLVR_FIELD(RenderParams, depth_near)                                                                                                   \
     CLVR_FIELD(RenderParams, depth_scale)                                                                                                  \
-    CLVR_FIELD(RenderParams, mode)                                                                                                         \
+    CLVR_FIELD(RenderParams, pad)                                                                                                          \
     CLVR_STRUCT(KeyLight)                                                                                                                  \
     CLVR_FIELD(KeyLight, direction)                                                                                                        \
     CLVR_FIELD(KeyLight, right)                                                                                                            \

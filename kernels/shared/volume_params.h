@@ -16,8 +16,8 @@ typedef struct VolumeParams {
     float4 to_index[3];  ///< rows: world direction [mm] to index direction
     float4 to_normal[3]; ///< rows: index gradient to world gradient [1/mm] (inverse transpose)
     float extinction;    ///< sigma_t at opacity 1 [1/mm]
-    float surface_scale; ///< 4 * smallest spacing / width of the visible value interval: p = 1 - exp(-surface_scale |grad|); see DESIGN
-                         ///< "Shading"
+    float surface_scale; ///< 4 * smallest spacing / width of the visible value interval: p = 1 - exp(-surface_scale |grad|)
+                         ///< (host/README.md, "Shading")
     int shading;         ///< 0 auto, 1 phase, 2 gradient
     int pad;
 } VolumeParams;

@@ -1,4 +1,4 @@
-// The loss by a convolution's biases, in the 16 lanes of weight_gradient. A work-item takes CLVR_WIDTH lanes of an output channel.
+// The gradient of the loss by a convolution's biases, in the 16 lanes of weight_gradient.cl. A work-item takes CLVR_WIDTH lanes of an output channel.
 #include "lib/planes.clh"
 #include "lib/vec.clh"
 

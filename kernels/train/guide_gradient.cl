@@ -1,9 +1,9 @@
-// The loss by the guides, through slicing and splatting at once (SPEC.md section 8), then by the sums before their sigmoid. A work-item takes CLVR_WIDTH
-// pixels of a row.
+// How the loss changes with the guides, through slicing and splatting at once (kernels/denoise/README.md, "Backward"), and from that with the sums before
+// their sigmoid. A work-item takes CLVR_WIDTH pixels of a row.
 #include "lib/grid.clh"
 #include "lib/pixels.clh"
 
-#ifndef CLVR_IMAGE_GRADIENT // 1: also the loss by the splatted colours (xyz) and weights (w), summed over the levels
+#ifndef CLVR_IMAGE_GRADIENT // 1: also the slope of the loss by the splatted colours (xyz) and weights (w), summed over the levels
 #define CLVR_IMAGE_GRADIENT 0
 #endif
 

@@ -1,5 +1,5 @@
-// The loss by the hidden layer's sums: dL/dp1 from dL/dp2 (SPEC.md section 8), CLVR_WIDTH pixels at once. A convolution with the mirrored, transposed weights, times the slope of
-// the leaky ReLU.
+// How the loss changes with the hidden layer's sums: dL/dp1 from dL/dp2 (kernels/denoise/README.md, "Backward"), CLVR_WIDTH pixels at once: a convolution
+// with the mirrored, transposed weights, times the slope of the leaky ReLU.
 #include "lib/activation.clh"
 #include "lib/convolution.clh"
 

@@ -1,4 +1,5 @@
-// The loss by the network's input: dL/da0 from dL/dp1 (SPEC.md section 8), CLVR_WIDTH pixels at once: a convolution with the mirrored, transposed weights.
+// How the loss changes with the network's input: dL/d(input) from dL/dp1 (kernels/denoise/README.md, "Backward"), CLVR_WIDTH pixels at once: a convolution with the
+// mirrored, transposed weights.
 #include "lib/convolution.clh"
 
 #define PLAIN(sum, at) (sum)

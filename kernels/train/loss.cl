@@ -1,4 +1,4 @@
-// The loss and its slope by the result (DESIGN.md "Loss", SPEC.md section 7). A work-item takes CLVR_WIDTH of a row's 16 lanes; lane l sums the columns
+// The loss and its slope by the result (kernels/denoise/README.md, "Loss"). A work-item takes CLVR_WIDTH of a row's 16 lanes; lane l sums the columns
 // l, l + 16, ... of all three colours, so that the sum is the same at every width.
 #include "lib/planes.clh"
 #include "lib/shifted_gamma.clh"

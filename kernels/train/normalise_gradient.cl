@@ -1,4 +1,5 @@
-// Backwards through the division N / D of each cell (SPEC.md section 8): from Q = dL/dV to A = Q / D and b = <A, V>, in place. One work-item a cell.
+// Backwards through the division N / D of each cell (kernels/denoise/README.md, "Backward"): from Q = dL/dV to A = Q / D and b = <A, V>, in place. One
+// work-item a cell.
 #pragma OPENCL FP_CONTRACT OFF
 
 // `cells`: V (xyz), D (w). `gradient`: Q (xyz), becomes A (xyz), b (w).

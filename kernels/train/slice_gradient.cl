@@ -1,5 +1,5 @@
-// Backwards through blending and slicing (SPEC.md section 8): the loss by the blending weights, and what the cells of each level get, as colours to splat.
-// A work-item takes CLVR_WIDTH pixels of a row.
+// Backwards through blending and slicing (kernels/denoise/README.md, "Backward"): the gradient of the loss by the blending weights, and what flows back to the
+// cells of each level, as colours to splat. A work-item takes CLVR_WIDTH pixels of a row.
 #include "lib/grid.clh"
 #include "lib/pixels.clh"
 

@@ -1,5 +1,5 @@
-// The loss by a convolution's weights (SPEC.md section 8), an image and 16 lanes of columns apart: lane l sums columns l, l + 16, ... of all rows. A
-// work-item takes CLVR_WIDTH lanes, CLVR_BLOCK output channels, an input channel and a row of taps. sum_lanes adds the lanes.
+// The gradient of the loss by a convolution's weights (kernels/denoise/README.md, "Backward"), for each image, in 16 lanes: lane l sums columns l, l + 16, ...
+// of all rows, and train/sum_lanes.cl adds the lanes. A work-item takes CLVR_WIDTH lanes of CLVR_BLOCK output channels, one input channel and one row of the kernel.
 #include "lib/planes.clh"
 #include "lib/vec.clh"
 

@@ -5,7 +5,7 @@
 
 #define DARK 12.0f // optical depth behind which no light is looked for
 
-// Whether anything visible lies within two cells of the sky grid around the corner's voxel: elsewhere no light is asked for. Of the first lane.
+// Whether anything visible lies within two cells of the sky grid around the corner's voxel: elsewhere nobody reads the light. Looks at the first lane.
 static inline bool near_something(const Volume* vol, __global const float* coarse, Int3 corner, int4 log2_edge) {
     int at[CLVR_WIDTH];
     v_store(coarse_index(vol->p, cell_of(corner, vol->p->coarse.w)), at);

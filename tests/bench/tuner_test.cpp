@@ -121,7 +121,7 @@ TEST(Knobs, AreSound) {
         }
 }
 
-/// A new tunable in host/ belongs into knobs_for, or into untuned() with the reason.
+/// A new tunable in host/ must be added to knobs_for, or to untuned() with the reason.
 TEST(Knobs, HoldEveryTunableOfTheSources) {
     std::set<std::string> known;
     for (const Knob& k : knobs_for(facts(DeviceType::cpu))) known.insert(k.name);

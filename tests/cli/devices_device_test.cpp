@@ -111,7 +111,7 @@ TEST_F(Program, KernelThatDoesNotBuildIsShownWithTheCompilersLog) {
     EXPECT_FALSE(std::filesystem::exists(home.path() / "x.png"));
 }
 
-/// In the middle: the volume is on the device already when the paths want memory.
+/// Memory runs out in the middle: the volume is on the device already when the paths need memory.
 TEST_F(Program, OutOfDeviceMemoryIsOneLineAndLeavesNoFile) {
     const Outcome outcome =
         run({"render", ball(), "--size", "512x512", "--spp", "1", "--memory", "600K", "-o", (home.path() / "x.png").string()});

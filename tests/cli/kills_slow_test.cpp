@@ -1,4 +1,4 @@
-// SIGKILL at random moments: nothing half-written has a final name, and the next run begins cleanly or goes on.
+// SIGKILL at random moments: nothing half-written has a final name, and the next run begins cleanly or continues.
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "tests/cli/home.hpp"
@@ -15,7 +15,7 @@ class Kills : public Program {
 protected:
     std::string path(const std::string& name) const { return (home.path() / name).string(); }
 
-    /// Runs the command to its end; then kills it again and again in its course, at times after removing `result`, and calls
+    /// Runs the command to its end; then kills it again and again while it runs, sometimes after removing `result`, and calls
     /// `check` each time; at last runs it to its end once more.
     template <class Check>
     void torture(const std::vector<std::string>& command, const std::string& result, const Check& check) const {

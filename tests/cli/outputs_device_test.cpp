@@ -1,4 +1,4 @@
-// Files that other files name are no outputs either: found while they are read, before anything is written.
+// Files that other files name must not be outputs either: this is found while reading, before anything is written.
 #include "tests/cli/home.hpp"
 
 #include <gmock/gmock.h>

@@ -106,7 +106,7 @@ TEST_F(Outputs, AreNoInputs) {
                         const std::string what = name_of(command, written) + " and " + read->get_name() + ": " + file + ", " + how;
                         EXPECT_EQ(text_of(input), content) << what;
                         EXPECT_EQ(line_count(o.err), 1) << what;
-                        // A plan that lies in the folder is gone on with, and never overwritten.
+                        // A plan that is in the folder is continued, and never overwritten.
                         if (input.filename() == "pairs.json" && command.words.front() == "pairs" && read->get_positional()) continue;
                         EXPECT_EQ(o.exit_code, 2) << what << "\n" << o.err;
                         EXPECT_THAT(o.err, HasSubstr("must not be overwritten")) << what;

@@ -1,4 +1,4 @@
-// Downloads killed at random moments: the file has its name only when it is whole, and the next download goes on.
+// Downloads killed at random moments: the file has its name only when it is whole, and the next download continues.
 #include "host/dataset/download.hpp"
 #include "tests/dataset/server.hpp"
 #include "tests/runtime/kills.hpp"
@@ -53,7 +53,7 @@ TEST(DownloadKills, LeaveAWholeFileOrAPart) {
         kill_after(begin_download(), moment(k) * life);
         if (fs::exists(path)) {
             EXPECT_EQ(text_of(path), body) << "kill " << k;
-        } else if (k % 2) { // this time the next one goes on
+        } else if (k % 2) { // this time the next download continues
             EXPECT_NO_THROW(download({server.url(), path, body.size(), "", 3, 0.01}));
         }
     }

@@ -12,7 +12,7 @@ namespace clvr::testing {
 
 inline Device test_device() { return Device::open(select_devices("").devices.front()); }
 
-/// Image n of x [B, H, W, 10] (SPEC.md section 2: demodulated radiance, albedo, normal, depth) as a frame.
+/// Image n of x [B, H, W, 10] (demodulated radiance, albedo, normal, depth) as a frame.
 inline Frame frame_of(const std::vector<double>& x, int height, int width, int n) {
     Frame f;
     f.width = width, f.height = height;

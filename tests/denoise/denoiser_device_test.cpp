@@ -1,4 +1,5 @@
-// Whole frames through the denoiser: the same bits for every shape of the work, what it does with odd input, SPEC section 13's properties.
+// Whole frames through the denoiser: the same bits for every shape of the work, what it does with odd input, what
+// kernels/denoise/README.md, "Properties" promises.
 #include "host/denoise/denoiser.hpp"
 #include "runtime/error.hpp"
 #include "tests/denoise/batches.hpp"
@@ -264,7 +265,7 @@ TEST(Denoiser, ShowsWhatTheNetworkMade) {
     }
 }
 
-/// The dihedral transforms of the crops, SPEC section 9.
+/// The dihedral transforms of the crops (kernels/denoise/README.md, "Training").
 TEST(Assemble, TurnsAsTheGoldenVectorsDo) {
     const Golden golden("augment");
     const std::vector<double> image = golden["image"]; // [3, 4, 2]

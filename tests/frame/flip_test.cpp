@@ -60,7 +60,7 @@ TEST(Flip, OfASinglePixel) {
     const std::vector<double> map = flip_map(frame_of(one, 41), frame_of(flat(0, 41 * 41), 41));
     EXPECT_EQ(std::max_element(map.begin(), map.end()) - map.begin(), 20 * 41 + 20);
     EXPECT_GT(map[20 * 41 + 20], 0.1);
-    EXPECT_LT(map[0], 1e-3); // beyond every filter
+    EXPECT_LT(map[0], 1e-3); // beyond the reach of every filter
     EXPECT_NEAR(map[20 * 41 + 17], map[17 * 41 + 20], 1e-12);
     expect_the_papers_formula(one, flat(0, 41 * 41), 41);
     EXPECT_GT(flip_map(frame_of({{1, 1, 1}}, 1), frame_of({{0, 0, 0}}, 1))[0], 0.95);

@@ -34,7 +34,7 @@ namespace fs = std::filesystem;
 std::string reports; // the folder
 std::string report;  // its files' names, without the process's number
 
-/// Of the whole pages: what is on the first and the last beside them is not ours.
+/// Whole pages only: the first and the last page hold other data, too.
 void share_counters() {
     const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
     const auto first = (reinterpret_cast<std::uintptr_t>(__start___sancov_cntrs) + page - 1) / page * page;
@@ -48,7 +48,7 @@ void share_counters() {
     std::memcpy(at, counts.data(), counts.size());
 }
 
-/// In a child: its standard error goes nowhere, and libFuzzer's input is the parent's to save.
+/// In a child: its standard error goes nowhere, and the parent is the one that saves libFuzzer's input.
 void report_into_file() {
     __sanitizer_set_report_path(report.c_str());
     __sanitizer_set_death_callback(nullptr);

@@ -1,5 +1,5 @@
-// Every fuzz target without libFuzzer: its samples are read, and a fixed set of damaged ones ends as a reader owes it. tools/fuzz.sh goes
-// further.
+// Every fuzz target without libFuzzer: its samples are read, and a fixed set of damaged ones is read or refused properly. tools/fuzz.sh
+// goes further.
 #include "tests/fuzz/mutation.hpp"
 #include "tests/fuzz/samples.hpp"
 #include "tests/runtime/scoped.hpp"

@@ -34,7 +34,7 @@ void require(bool holds, const char* what) {
     if (!holds) throw std::logic_error(what);
 }
 
-/// Lets pass a refusal as every reader owes it: its kind, one line, the place.
+/// Accepts a proper refusal only: of the right kind, of one line, with a place.
 void check_refusal(const Error& e, ErrorKind kind) {
     require(e.kind() == kind, "an error of another kind");
     require(e.line().find('\n') == std::string::npos, "an error of several lines");
@@ -43,7 +43,7 @@ void check_refusal(const Error& e, ErrorKind kind) {
 
 // --- volumes
 
-/// As read_volume finishes what a reader returns.
+/// Finishes what a reader returns, as read_volume does.
 void check_volume(Voxels v) {
     require(v.dims[0] > 0 && v.dims[1] > 0 && v.dims[2] > 0, "a volume without voxels");
     require(v.bytes.size() == v.count() * voxel_bytes(v.type), "a volume with other bytes than its size says");

@@ -1,4 +1,4 @@
-// The feature march in double precision: every sample of the lattice visited, none skipped (DESIGN.md section 4 "Features").
+// The feature march in double precision: every sample of the lattice visited, none skipped (host/README.md, "Features").
 #pragma once
 #include "host/render/view.hpp"
 #include "tests/reference/volume.hpp"

@@ -126,7 +126,7 @@ Level splat_and_slice(const Grid& grid, const GridImage& image) {
     return l;
 }
 
-/// dL/d(guide) of a level for upstream dL/d(sliced) (SPEC.md section 8).
+/// dL/d(guide) of a level for upstream dL/d(sliced) (kernels/denoise/README.md, "Backward").
 Plane by_guide(const Grid& grid, const GridImage& image, const Level& l, const std::vector<Rgb>& upstream) {
     const std::size_t pixels = static_cast<std::size_t>(image.height) * image.width;
     Plane q(3 * grid.cells()), b(grid.cells()), gradient(pixels);

@@ -1,11 +1,13 @@
-// The neural bilateral grid in double precision, forward and backward, one image, loop by loop as SPEC.md sections 3 to 8 write it.
+// The neural bilateral grid in double precision, forward and backward, one image, loop by loop as kernels/denoise/README.md
+// writes it, from "Network" to "Backward".
 #pragma once
 #include <utility>
 #include <vector>
 
 namespace clvr::reference {
 
-enum class GridLoss { shifted_gamma, reference, smape, relative_l2, noisy, shifted_gamma_l2, shifted_gamma_bands }; ///< DESIGN.md "Loss"
+/// kernels/denoise/README.md, "Loss"
+enum class GridLoss { shifted_gamma, reference, smape, relative_l2, noisy, shifted_gamma_l2, shifted_gamma_bands };
 
 struct Network {
     int channels = 0, hidden = 0, kernel = 5;

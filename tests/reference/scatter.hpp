@@ -1,4 +1,4 @@
-// Scattering in double precision, from the formulas that DESIGN.md section 4 "Transport" names.
+// Scattering in double precision, from the formulas that host/README.md, "Shading" names.
 #pragma once
 #include "host/volume/vec.hpp"
 

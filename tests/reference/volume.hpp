@@ -1,4 +1,4 @@
-// Interpolation, gradient and classification in double precision, straight from DESIGN.md section 4.
+// Interpolation, gradient and classification in double precision, straight from host/README.md, "Geometry" and "Transfer function".
 #pragma once
 #include "host/volume/transfer_function.hpp"
 

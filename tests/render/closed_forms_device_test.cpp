@@ -47,8 +47,8 @@ TEST(Absorption, OfARampIsItsIntegral) {
     for (float a : dvr.at("A")) ASSERT_NEAR(a, alpha, 5e-6);
 }
 
-/// DESIGN "Shading": p = 1 - exp(-4 s), s = |gradient| x smallest spacing / width of the visible interval. The dvr mode dims what faces
-/// away by it.
+/// host/README.md, "Shading": p = 1 - exp(-4 s), s = |gradient| x smallest spacing / width of the visible interval. The dvr mode dims what
+/// faces away by it.
 TEST(SurfaceChance, FollowsTheGradient) {
     Voxels v = volume_of<std::uint8_t>({40, 40, 40}, [](int, int, int z) { return 6 * z; });
     v.geometry.spacing = {1.5, 1.5, 0.75};

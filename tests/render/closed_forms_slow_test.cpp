@@ -39,9 +39,8 @@ TEST(ClippedFurnace, IsOne) {
     expect_furnace(v, s, environment_tables(env_width, env_height, std::vector<float>(3 * env_width * env_height, 1.0f), 1));
 }
 
-/// Paths of a thousand scatterings, which the roulette of long white paths ends. Their weight is a product of a thousand that are 1 in the
-/// mean: of five seeds tried, before these random numbers and with them, one had a path that alone lifts the standard error above what is
-/// asked.
+/// Paths of a thousand scatterings, which the roulette of long white paths ends. Their weight is a product of a thousand factors of mean 1.
+/// Of five seeds tried, before these random numbers and with them, one had a single path that lifts the standard error above the limit.
 TEST(DenseFurnace, IsOneBehindFiftyMeanFreePaths) {
     Scene s = furnace_scene(Shading::automatic, 0, 256);
     s.seed = 1;

@@ -15,10 +15,10 @@ TEST(SeveralDevices, GiveTheBitsOfOne) {
         Scene scene = wavy_scene();
         scene.mode = mode;
         scene.background.kind = Background::Kind::environment;
-        const Frame one = Renderer({shared_device()}, volume, scene).render();
+        const Frame one = clvr::render({shared_device()}, volume, scene);
         ASSERT_EQ(one.has("variance.R"), mode == Mode::path);
-        expect_same(Renderer(parts, volume, scene).render(), one);
-        if (mode == Mode::path) expect_same(Renderer(twice, volume, scene).render(), one);
+        expect_same(clvr::render(parts, volume, scene), one);
+        if (mode == Mode::path) expect_same(clvr::render(twice, volume, scene), one);
     }
 }
 
@@ -28,21 +28,22 @@ TEST(SeveralDevices, SubDevicesShareTheVolume) {
     const PreparedVolume volume(constant_volume({64, 64, 64}));
     Scene scene = wavy_scene();
     const std::size_t before = devices[0].used_bytes();
-    const Renderer one({devices[0]}, volume, scene);
+    RenderSession one({devices[0]}, volume, scene);
     const std::size_t alone = devices[0].used_bytes() - before;
-    const Renderer both(devices, volume, scene);
+    RenderSession both(devices, volume, scene);
     EXPECT_LT(devices[0].used_bytes() - before - alone, alone + 64 * 64 * 64 / 2);
 }
 
 TEST(SeveralDevices, AViewAfterTheOther) {
     const PreparedVolume volume = wavy_volume();
     const Scene scene = wavy_scene();
-    Renderer one({shared_device()}, volume, scene), two(two_devices(), volume, scene);
+    RenderSession one({shared_device()}, volume, scene), two(two_devices(), volume, scene);
     for (int view = 0; view < 3; ++view) {
-        Camera camera = scene.camera;
-        camera.azimuth += 40 * view;
-        one.aim(camera, view), two.aim(camera, view);
-        expect_same(two.render(), one.render());
+        Scene there = scene;
+        there.camera.azimuth += 40 * view;
+        there.view = view;
+        one.set_view(there), two.set_view(there);
+        expect_same(clvr::render(two, there), clvr::render(one, there));
     }
 }
 
@@ -50,17 +51,17 @@ TEST(SeveralDevices, AViewAfterTheOther) {
 void expect_same_with(const std::string& fault, long warned, int delay_ms = 0) {
     SCOPED_TRACE(fault);
     static const PreparedVolume volume = wavy_volume();
-    static const Frame one = Renderer({shared_device()}, volume, wavy_scene()).render();
+    static const Frame one = clvr::render({shared_device()}, volume, wavy_scene());
     const Warnings warnings;
-    Renderer renderer(faulty_devices(fault, 2, delay_ms), volume, wavy_scene());
-    expect_same(renderer.render(), one);
+    RenderSession session(faulty_devices(fault, 2, delay_ms), volume, wavy_scene());
+    expect_same(clvr::render(session, wavy_scene()), one);
     EXPECT_EQ(lines_of(warnings.text()), warned) << warnings.text();
     if (warned > 0) {
         EXPECT_THAT(warnings.text(), ::testing::AllOf(::testing::HasSubstr("part 2/2 of device"),
                                                       ::testing::HasSubstr("failed and is left out, the other devices do its work")));
     }
-    EXPECT_EQ(renderer.devices().size(), warned > 0 ? 1u : 2u);
-    expect_same(renderer.render(), one); // and without a word about it again
+    EXPECT_EQ(session.devices().size(), warned > 0 ? 1u : 2u);
+    expect_same(clvr::render(session, wavy_scene()), one); // and without a word about it again
     EXPECT_EQ(lines_of(warnings.text()), warned) << warnings.text();
 }
 
@@ -69,7 +70,7 @@ ErrorKind refusal_with(const std::string& fault, int part, std::string* line = n
     const PreparedVolume volume = wavy_volume();
     const Warnings warnings;
     try {
-        Renderer(faulty_devices(fault, part), volume, wavy_scene()).render();
+        clvr::render(faulty_devices(fault, part), volume, wavy_scene());
     } catch (const Error& e) {
         if (line) *line = e.line();
         return e.kind();
@@ -97,7 +98,7 @@ TEST(FaultyDevices, AllOfThemAreAnError) {
 TEST(FaultyDevices, OtherBitsThanTheOthersAreFoundBeforeTheyMix) {
     if (faulty_devices("delay:1").empty()) GTEST_SKIP() << "the device has no parts";
     std::string line;
-    EXPECT_EQ(refusal_with("result:render/accumulate", 2, &line), ErrorKind::device); // which of the two is wrong, nobody knows
+    EXPECT_EQ(refusal_with("result:render/accumulate", 2, &line), ErrorKind::device); // of two that differ, nobody knows which one is wrong
     EXPECT_THAT(line, ::testing::HasSubstr("compute different pictures"));
 }
 

@@ -148,7 +148,7 @@ TEST(Ramp, OfColoursIsARampInThePicture) {
     }
 }
 
-/// What the default step leaves to gain, on steep transfer functions at the optical depth per voxel of a 256^3 volume.
+/// How much a smaller step would still change, for steep transfer functions at the optical depth per voxel of a 256^3 volume.
 TEST(Step, HalvedChangesTheOpacityLittle) {
     const Voxels v = volume_of<std::uint8_t>({128, 128, 128}, [](int x, int y, int z) {
         const double r = std::sqrt((x - 64.0) * (x - 64) + (y - 64.0) * (y - 64) + (z - 64.0) * (z - 64));

@@ -30,13 +30,13 @@ inline void expect_golden_in_pools(const std::string& name, int pools, const std
 inline void expect_paths_in_pools(const std::string& name, int pools, const std::string& max_alloc) {
     Scene scene = golden_scene(name);
     scene.features = false;
-    const Frame whole = Renderer({shared_device()}, golden_volume(), scene).render();
+    const Frame whole = clvr::render({shared_device()}, golden_volume(), scene);
     const ScopedVariable limit("CLVR_MAX_ALLOC", max_alloc);
     Device device = open_device();
     device.set_tunable("wave_paths", 1 << 15);
     const Stage stage(golden_volume().voxels, scene);
     ASSERT_EQ(device_layout(device, stage.classified).pools, pools);
-    EXPECT_EQ(pixel_hash(Renderer({device}, golden_volume(), scene).render()), pixel_hash(whole)) << pools << " pools";
+    EXPECT_EQ(pixel_hash(clvr::render({device}, golden_volume(), scene)), pixel_hash(whole)) << pools << " pools";
 }
 
 } // namespace clvr::testing

@@ -48,21 +48,19 @@ TEST(Golden, TwoSubDevicesGiveTheSameBits) {
         EXPECT_EQ(pixel_hash(render_golden(name, devices)), golden_hashes.at(name)) << name;
 }
 
-TEST(Golden, RepeatsWithinOneRendererAndAfterTurning) {
+TEST(Golden, RepeatsWithinOneSessionAndAfterTurning) {
     const Scene scene = golden_scene("automatic");
-    Renderer renderer({shared_device()}, golden_volume(), scene);
-    EXPECT_EQ(pixel_hash(renderer.render()), golden_hashes.at("automatic"));
-    Camera turned = scene.camera;
-    turned.azimuth += 90;
-    renderer.aim(turned, 1);
-    const Frame other = renderer.render();
-    EXPECT_NE(pixel_hash(other), golden_hashes.at("automatic"));
+    RenderSession session({shared_device()}, golden_volume(), scene);
+    EXPECT_EQ(pixel_hash(clvr::render(session, scene)), golden_hashes.at("automatic"));
     Scene from_there = scene;
-    from_there.camera = turned;
+    from_there.camera.azimuth += 90;
     from_there.view = 1;
-    EXPECT_EQ(pixel_hash(Renderer({shared_device()}, golden_volume(), from_there).render()), pixel_hash(other));
-    renderer.aim(scene.camera, scene.view);
-    EXPECT_EQ(pixel_hash(renderer.render()), golden_hashes.at("automatic"));
+    session.set_view(from_there);
+    const Frame other = clvr::render(session, from_there);
+    EXPECT_NE(pixel_hash(other), golden_hashes.at("automatic"));
+    EXPECT_EQ(pixel_hash(clvr::render({shared_device()}, golden_volume(), from_there)), pixel_hash(other));
+    session.set_view(scene);
+    EXPECT_EQ(pixel_hash(clvr::render(session, scene)), golden_hashes.at("automatic"));
 }
 
 TEST(Golden, TurnsToOtherFrames) {
@@ -73,14 +71,14 @@ TEST(Golden, TurnsToOtherFrames) {
     other.seed += 7;
     other.spp = scene.spp + 2;
     other.features = false;
-    Renderer renderer({shared_device()}, golden_volume(), other);
-    renderer.render();
-    renderer.turn_to(scene);
-    EXPECT_EQ(pixel_hash(renderer.render()), golden_hashes.at("automatic"));
-    renderer.turn_to(other);
-    const Frame there = renderer.render();
+    RenderSession session({shared_device()}, golden_volume(), other);
+    clvr::render(session, other);
+    session.set_view(scene);
+    EXPECT_EQ(pixel_hash(clvr::render(session, scene)), golden_hashes.at("automatic"));
+    session.set_view(other);
+    const Frame there = clvr::render(session, other);
     EXPECT_FALSE(there.has("albedo.R"));
-    EXPECT_EQ(pixel_hash(there), pixel_hash(Renderer({shared_device()}, golden_volume(), other).render()));
+    EXPECT_EQ(pixel_hash(there), pixel_hash(clvr::render({shared_device()}, golden_volume(), other)));
 }
 
 /// Passes of 1, 2, 4 ... samples: a rendering that stops early is the one that asked for no more.
@@ -94,10 +92,10 @@ TEST(Golden, AStoppedRenderingIsTheOneThatAskedForNoMore) {
     control.progress = [&](const RenderProgress& p) {
         if (p.samples >= 7) cancelled = true;
     };
-    const Frame stopped = Renderer({shared_device()}, volume, scene).render(control);
+    const Frame stopped = clvr::render({shared_device()}, volume, scene, {}, control);
     ASSERT_EQ(stopped.attributes.at("clvr.spp"), "7");
     scene.spp = 7;
-    EXPECT_EQ(pixel_hash(Renderer({shared_device()}, volume, scene).render()), pixel_hash(stopped));
+    EXPECT_EQ(pixel_hash(clvr::render({shared_device()}, volume, scene)), pixel_hash(stopped));
 }
 
 TEST(Golden, ATimeLimitKeepsWholePasses) {
@@ -106,16 +104,16 @@ TEST(Golden, ATimeLimitKeepsWholePasses) {
     scene.spp = 1 << 20;
     RenderControl control;
     control.seconds = 0.5;
-    const Frame limited = Renderer({shared_device()}, volume, scene).render(control);
+    const Frame limited = clvr::render({shared_device()}, volume, scene, {}, control);
     scene.spp = std::stoi(limited.attributes.at("clvr.spp"));
     ASSERT_GE(scene.spp, 1);
     ASSERT_LT(scene.spp, 1 << 20);
-    EXPECT_EQ(pixel_hash(Renderer({shared_device()}, volume, scene).render()), pixel_hash(limited));
+    EXPECT_EQ(pixel_hash(clvr::render({shared_device()}, volume, scene)), pixel_hash(limited));
 }
 
 TEST(Golden, SeedAndViewChangeTheNoiseOnly) {
     Scene scene = golden_scene("automatic");
-    const auto picture = [&] { return Renderer({shared_device()}, golden_volume(), scene).render(); };
+    const auto picture = [&] { return clvr::render({shared_device()}, golden_volume(), scene); };
     const Frame first = picture();
     scene.seed += 1;
     const Frame reseeded = picture();

@@ -15,7 +15,7 @@ TEST(Golden, EveryModeGivesTheSameBitsAtEveryWidth) {
         for (const auto& [name, hash] : golden_hashes) expect_golden(name, {{"packet", width}, {"brick_log2", 4}});
 }
 
-/// Compilers may contract a * b + c where they are not told otherwise, and some do where they are: no bit of ours may depend on it.
+/// Compilers may contract a * b + c unless they are told not to, and some do it even then: no bit of clvr may depend on it.
 TEST(Golden, ContractionChangesNoBit) {
     const TemporaryFolder folder;
     int allowed = 0;

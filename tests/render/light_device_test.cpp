@@ -1,5 +1,5 @@
 // Lights: radiance and density against closed forms, samples against densities, irradiance, the scale of the default light.
-#include "host/render/light_tables.hpp"
+#include "host/render/device_lights.hpp"
 #include "tests/render/kernel_under_test.hpp"
 #include "tests/render/scenes.hpp"
 #include "tests/render/statistics.hpp"
@@ -61,7 +61,7 @@ struct Lights : ::testing::Test {
     Kernel kernel = test_kernel(device, "light_values", {{"CLVR_WIDTH", "1"}});
 
     Lit run(const Stage& stage, Function function, const std::vector<float4>& in) {
-        const LightTables light(device, stage.render, stage.environment);
+        const DeviceLights light(device, stage.render, stage.environment);
         const Buffer input = device.upload(in, "in"), at = device.buffer(16 * in.size(), "at"),
                      radiance = device.buffer(16 * in.size(), "radiance");
         const auto count = static_cast<std::uint32_t>(in.size());
@@ -265,7 +265,7 @@ TEST_F(Lights, KeyIsAUniformDisc) {
     for (int i = 0; i < 4; ++i) EXPECT_EQ(met.radiance[i].x > 1.0f, i < 2) << i;
 }
 
-/// DESIGN: a white Lambert surface that faces the key under the default light has radiance 1; no other one more.
+/// A white Lambert surface that faces the key under the default light has radiance 1; no other one has more (host/README.md, "Lights").
 TEST_F(Lights, DefaultLightIsScaledToOne) {
     const auto stage = stage_of(sky_scene(1));
     const Lit sampled = samples(*stage, sample_light, 1 << 20);

@@ -17,7 +17,7 @@ struct Marched {
 
 inline Marched march(Device& device, const Stage& stage, March kind = March::features) {
     const DeviceVolume volume = stage.upload(device);
-    const LightTables light(device, stage.render, stage.environment);
+    const DeviceLights light(device, stage.render, stage.environment);
     Marched m;
     m.numbers = (stage.scene.width + 3u) / 4 * ((stage.scene.height + 3u) / 4) * 16;
     m.planes.resize(static_cast<std::size_t>(m.numbers) * march_planes(kind));

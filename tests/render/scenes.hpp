@@ -21,10 +21,10 @@ inline Device& shared_device() {
 
 inline Frame render(const Voxels& v, const Scene& scene, const EnvironmentTables& environment = {}) {
     const PreparedVolume prepared(v);
-    return Renderer({shared_device()}, prepared, scene, environment).render();
+    return clvr::render({shared_device()}, prepared, scene, environment);
 }
 
-/// The demand on closed forms: a relative standard error of at most 0.3 %, within 4 sigma.
+/// The demand on closed forms: a relative standard error of at most 0.3 %, and a mean within 4 sigma.
 /// `rounding`: relative error of the float sums themselves, which the sigma of nearly noise-free pictures does not know.
 inline void expect_mean(const Frame& frame, const std::string& name, double expected, double rounding = 2e-6) {
     const Mean m = image_mean(frame, name);

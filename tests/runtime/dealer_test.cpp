@@ -1,4 +1,4 @@
-// Dealing to workers that are no devices: every number once, by speed, around failures.
+// Sharing work among workers that are no devices: every number once, by speed, also when some fail.
 #include "runtime/dealer.hpp"
 #include "tests/runtime/warnings.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// How often each number was done, and by whom how many.
+/// How often each number was done, and how many each worker did.
 struct Tally {
     explicit Tally(std::uint32_t total, std::size_t devices = 3) : times(total), by(devices) {}
     void note(std::size_t device, std::uint32_t first, std::uint32_t count) {

@@ -1,4 +1,4 @@
-// The workarounds, each where its driver is at hand.
+// The workarounds, each tested where its driver is installed.
 #include "runtime/quirks.hpp"
 
 #include "runtime/facts.hpp"
@@ -39,7 +39,7 @@ TEST(Quirks, OclgrindIsBuiltWithoutInlining) {
     EXPECT_THAT(build_options(facts, {}), testing::Not(testing::HasSubstr("-fno-inline")));
 }
 
-/// Of the installed drivers: what they claim is what clvr takes them for.
+/// For the installed drivers: clvr recognises each by what it claims to be.
 TEST(Quirks, InstalledDrivers) {
     for (const DeviceFacts& d : list_devices()) {
         EXPECT_EQ(d.simulator, d.platform == oclgrind) << d.platform;

@@ -22,7 +22,7 @@ inline std::vector<Device> open_two_devices() {
 /// The same, opened once: for tests that set nothing on them.
 inline const std::vector<Device>& two_devices() {
     static const std::vector<Device>* const devices =
-        new std::vector<Device>(open_two_devices()); // never destroyed: as the driver likes it
+        new std::vector<Device>(open_two_devices()); // never destroyed: the driver may be gone by then
     return *devices;
 }
 

@@ -140,7 +140,7 @@ TEST_P(Stage, MeetsTheGoldenVectors) {
             for (const auto& c : device.download<shared::float4>(b, count)) v.insert(v.end(), {c.x, c.y, c.z});
             return v;
         };
-        const auto smooth = [&](std::vector<double> v) { // what lies on a kink may have any slope between two
+        const auto smooth = [&](std::vector<double> v) { // on a kink any slope between the two sides is right
             for (std::size_t i = 0; i < v.size(); ++i)
                 if (kink[i] != 0) v[i] = 0;
             return v;

@@ -1,4 +1,4 @@
-// SPEC.md section 13: what the operators of the bilateral grid promise for any input.
+// What the operators of the bilateral grid promise for any input (kernels/denoise/README.md, "Properties").
 #include "host/denoise/denoiser.hpp"
 #include "host/train/training_step.hpp"
 #include "tests/denoise/batches.hpp"

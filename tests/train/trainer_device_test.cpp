@@ -1,4 +1,4 @@
-// Training: gradients by finite differences, the same bits however it is cut, interruption, overfitting, what it refuses.
+// Training: gradients against finite differences, the same bits however the work is divided, interruption, overfitting, what is refused.
 #include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
@@ -291,7 +291,7 @@ TEST_F(TrainerFiles, EndsAfterItsSteps) {
     ASSERT_TRUE(train(c, "cut.safetensors", true));
     EXPECT_EQ(read_text(path("whole.safetensors")), read_text(path("cut.safetensors")));
     EXPECT_EQ(csv, read_text(path("cut.training.csv")));
-    // A finished one has nothing left to do, and leaves its files again where they were lost.
+    // A finished training has nothing left to do, and writes its files again where they were lost.
     std::filesystem::remove(path("cut.safetensors"));
     ASSERT_TRUE(train(c, "cut.safetensors", true));
     EXPECT_EQ(read_text(path("whole.safetensors")), read_text(path("cut.safetensors")));

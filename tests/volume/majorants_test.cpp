@@ -16,7 +16,7 @@ std::size_t cell_of(const MajorantGrid& grid, const Int3& base) {
     return (cell(2) * grid.cells[1] + cell(1)) * grid.cells[0] + cell(0);
 }
 
-/// The interpolated opacity in single precision, as DESIGN fixes it.
+/// The interpolated opacity in single precision, as host/README.md, "Transfer function" fixes it.
 float opacity_at(const Voxels& v, const TransferTable& table, const std::array<float, 3>& pos) {
     int base[3];
     float t[3];

@@ -1,4 +1,4 @@
-// The transfer function that nobody chose: background vanishes, structure shows, whatever the values mean.
+// The automatic transfer function: background vanishes, structure shows, whatever the values mean.
 #include "host/volume/transfer_function.hpp"
 #include "host/volume/value_statistics.hpp"
 

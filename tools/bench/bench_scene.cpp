@@ -65,7 +65,7 @@ SceneOnDevice::SceneOnDevice(Device& device, const PreparedVolume& prepared, con
     const auto outline = visible_outline(voxels.geometry, prepared.grid, classified.majorants, {}, clip_box_index(scene, voxels));
     render_params = clvr::render_params(scene, voxels, resolve_view(scene, outline, false), {});
     volume = std::make_unique<DeviceVolume>(device, classified, layout, volume_params);
-    light = std::make_unique<LightTables>(device, render_params, EnvironmentTables{});
+    light = std::make_unique<DeviceLights>(device, render_params, EnvironmentTables{});
     const SkySplit split = split_sky(render_params, EnvironmentTables{});
     keys = std::make_unique<KeyLights>(device, key_lights(render_params, split));
     sky = std::make_unique<SkyLight>(device, *volume, split);

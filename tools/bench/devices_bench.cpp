@@ -1,6 +1,6 @@
 // clvr-devices-bench: two parts of a device joined against one of them, on a render of 64 samples per pixel and on training steps. Both in
 // turn, medians of five. A part must have its share of the machine to itself: under other load the ratio says nothing.
-#include "host/render/renderer.hpp"
+#include "host/render/session.hpp"
 #include "host/train/training_step.hpp"
 #include "host/volume/phantom.hpp"
 #include "runtime/select.hpp"
@@ -31,9 +31,9 @@ void render(const std::vector<Device>& parts) {
     scene.width = scene.height = 256;
     scene.spp = 64;
     scene.features = false;
-    Renderer one({parts.front()}, volume, scene), both(parts, volume, scene);
+    RenderSession one({parts.front()}, volume, scene), both(parts, volume, scene);
     compare(
-        "render, 256x256, 64 spp", 1.7, [&] { one.render(); }, [&] { both.render(); });
+        "render, 256x256, 64 spp", 1.7, [&] { clvr::render(one, scene); }, [&] { clvr::render(both, scene); });
 }
 
 void train(const std::vector<Device>& parts) {

@@ -11,10 +11,10 @@ int edge_of(Size size) { return size == Size::tiny ? 24 : 192; }
 
 StageRun path_trace(std::vector<Device>& devices, Size size) {
     const Scene scene = size == Size::tiny ? benchmark_scene(8, 8, 1) : benchmark_scene(320, 240, 4);
-    const auto renderer = std::make_shared<Renderer>(devices, prepared_volume(edge_of(size)), scene);
+    const auto session = std::make_shared<RenderSession>(devices, prepared_volume(edge_of(size)), scene);
     const auto frame = std::make_shared<Frame>();
     StageRun r;
-    r.run = [=] { *frame = renderer->render(); };
+    r.run = [=] { *frame = clvr::render(*session, scene); };
     r.hash = [=] { return pixel_hash(*frame); };
     r.items = static_cast<double>(scene.width) * scene.height * scene.spp;
     return r;

@@ -13,7 +13,7 @@ kernel_clang() { # FILE OPTION...: clang on a kernel file as OpenCL C 1.2, from 
     "$kernel_compiler" -x cl -cl-std=CL1.2 -Xclang -finclude-default-header -I . "${@:2}" "$1"
 }
 
-# Lines "FILE DEFINE..." in; those out whose preprocessed text was not there before: most kernels look at few of the defines.
+# Reads lines "FILE DEFINE..." and prints those whose preprocessed text is new: most kernels use few of the defines.
 distinct() {
     local line text
     local -A seen=()
@@ -25,7 +25,7 @@ distinct() {
 }
 
 # for_each_kernel ROOT [SKIPPED [FILTER]]: calls the shell function `check FILE DEFINE...` for every .cl file of ROOT/kernels but those whose path
-# matches the pattern SKIPPED, in every variant (that the shell function FILTER lets through), those that speak of CLVR_WIDTH also 16 lanes wide; two
+# matches the pattern SKIPPED, in every variant (that the shell function FILTER lets through), those that mention CLVR_WIDTH also 16 lanes wide; two
 # at a time. Fails when a check does (it says why itself) or when there is no file.
 for_each_kernel() {
     cd "$1/kernels"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Refuses kernels that use what has not the same bits on every device (DESIGN.md section 4, "Arithmetic in kernels"): looks at what the compiled IR
+# Refuses kernels that use what does not have the same bits on every device (kernels/README.md, "Arithmetic"): looks at what the compiled IR
 # leaves unresolved, so it sees through macros and headers. Usage: kernel_symbols.sh ROOT
 source "$(dirname "$0")/kernel_files.sh"
 

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Refuses includes across layers (DESIGN.md section 2: who may include whom). Usage: layers.sh ROOT
+# Refuses includes across layers (host/README.md, "Who may include whom"). Usage: layers.sh ROOT
 set -euo pipefail
 cd "$1"
 status=0

@@ -65,4 +65,14 @@ expect refuses layers host/cli/a.cpp 'only in host/io' <<<'#include <tiffio.h>'
 expect refuses layers host/cli/a.cpp 'steady_clock' <<<'auto now = std::chrono::system_clock::now();'
 expect refuses layers runtime/a.cpp 'knows no volume' <<<'// for every Voxel'
 
+expect accepts documents README.md <<<'# clvr'
+expect accepts documents host/README.md < <(printf '# host\n\n## Frames\n\nSee host/README.md, "Frames", "host" and `host/README.md`.\n')
+expect refuses documents host/a.hpp 'there is no host/README.md' <<<'/// host/README.md, "Frames"'
+expect refuses documents host/README.md 'no section "Pictures"' < <(printf '## Frames\n`host/README.md`, "Frames" and "Pictures"\n')
+expect refuses documents host/README.md 'no section "Two words"' < <(printf '## Words\nas host/README.md, "Two\nwords" says\n')
+expect refuses documents host/README.md 'there is no host/gone.cpp' <<<'as `host/gone.cpp` does'
+for document in DESIGN.md 'SPEC section 3' 'FACTS.md' 'kernel_study/vec.clh'; do
+    expect refuses documents kernels/lib/a.clh 'which no clone has' <<<"// as $document says"
+done
+
 [ "$failures" == 0 ] && echo "every lint refuses what it should"

@@ -21,7 +21,7 @@ struct CompletedCommand {
     std::vector<OptionText> options;
     std::vector<const CLI::App*> commands;
 };
-/// The program, its commands, and theirs. The program's options are valid for all of its commands, too, and stand in each.
+/// The program, its commands, and their commands. The program's own options are valid for all commands, so each lists them, too.
 std::vector<CompletedCommand> completed_commands(const CLI::App& program);
 
 /// "clvr-bench" as the name of a shell function: "_clvr_bench".

@@ -115,7 +115,7 @@ std::string model_settings_json(const Model& m) {
                                     {"exposure", m.exposure},
                                     {"albedo_floor", static_cast<double>(m.albedo_floor)},
                                     {"opacity_weight", m.opacity_weight}};
-    // Absent, as in files of before the switches: on and off.
+    // Left out where they have the default: such files have the same bytes as before these switches existed.
     if (!m.demodulation) settings["demodulation"] = false;
     if (m.control_variate) settings["control_variate"] = true;
     if (m.control_variate_cell) settings["control_variate_cell"] = m.control_variate_cell;

@@ -1,4 +1,4 @@
-// Models to and from safetensors files (DESIGN.md "Model file").
+// Models to and from safetensors files (host/README.md, "Model files").
 #pragma once
 #include "host/denoise/model.hpp"
 #include "host/io/model/safetensors.hpp"
@@ -9,10 +9,10 @@
 namespace clvr {
 
 /// Reads a model; "default", "color" and so on (embedded_model_names, where there is no such file) are those inside the binary. A file
-/// without metadata, with 10 input channels, means the reference's channels and no preprocessing. Throws Error{input}: what is wrong with
+/// without metadata and with 10 input channels has the reference's channels and no preprocessing. Throws Error{input}: what is wrong with
 /// the header, a tensor, a shape or a weight, and what was expected; Error{usage} when the binary has no such model.
 Model read_model(const std::string& path);
-/// Names of the models inside the binary, the one that reads the most of a frame first.
+/// Names of the models inside the binary; the one that reads the most channels comes first.
 std::vector<std::string> embedded_model_names();
 /// Writes the four tensors in order, the settings and the notes as metadata; atomically.
 void write_model(const Model& model, const std::string& path);

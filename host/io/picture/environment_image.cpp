@@ -21,7 +21,7 @@ RgbImage from_frame(const Frame& frame) {
     return image;
 }
 
-/// The frame, or its part that is shown. Light that comes from nowhere but a spot is an error of the file's windows.
+/// The frame, or the part of it that is shown. Where light would come from a small part of the sphere only, the file's windows are wrong.
 RgbImage from_shown(const Frame& frame) {
     const Region shown = frame.shown(), window = frame.window();
     if (shown == window) return from_frame(frame);

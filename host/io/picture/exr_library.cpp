@@ -38,7 +38,7 @@ void use_all_cores() {
 
 namespace {
 
-/// Bytes of the types whose values OpenEXR reads without a look at the size that the file gives them; nothing for others.
+/// Sizes of the types whose values OpenEXR reads without looking at the size in the file; nothing for others. [bytes]
 std::optional<std::uint64_t> fixed_size(const std::string& type) {
     static const std::map<std::string, std::uint64_t> sizes{{"box2f", 16},
                                                             {"box2i", 16},
@@ -68,7 +68,7 @@ std::optional<std::uint64_t> fixed_size(const std::string& type) {
     return found == sizes.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// The bytes that a value takes: those that the file says, or those that OpenEXR reads whatever the file says. The stream stands at the
+/// The bytes that a value takes: as many as the file says, or as OpenEXR reads whatever the file says. The stream stands at the
 /// value.
 std::uint64_t true_size(std::ifstream& file, const std::string& type, std::uint64_t said) {
     if (const auto fixed = fixed_size(type)) return *fixed;

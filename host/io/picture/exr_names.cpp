@@ -44,8 +44,8 @@ std::set<std::string> choose_view(std::vector<ExrPart>& parts) {
     return others;
 }
 
-/// In a file with a list of views, a channel's view is the last name but one: "right.R", "diffuse.right.R"; without one it is the first's.
-/// Empty: it is another view's, which is noted in `others`.
+/// The channel's name without its view. In a file with a list of views, the view is the last name but one: "right.R", "diffuse.right.R"; a
+/// name without a view belongs to the first view. Empty for a channel of another view, which is noted in `others`.
 std::string name_in_view(const std::string& channel, const std::vector<std::string>& views, std::set<std::string>& others) {
     const std::size_t dot = channel.rfind('.');
     if (views.empty() || dot == channel.npos) return channel;
@@ -57,7 +57,7 @@ std::string name_in_view(const std::string& channel, const std::vector<std::stri
     return "";
 }
 
-/// The number of the beauty's part; that of all: none.
+/// The number of the part with the beauty; the number of parts where none has it.
 std::size_t beauty_part(const std::vector<ExrPart>& parts) {
     const auto with = [&](auto accept) {
         return static_cast<std::size_t>(

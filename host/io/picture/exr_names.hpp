@@ -18,10 +18,10 @@ struct ExrNames {
     std::vector<std::string> notes;              ///< what was left out or chosen, a sentence each
 };
 
-/// A file of one part keeps its names. Of several, a channel with a dot in its name (a layer's) keeps it, and so do those of the beauty:
-/// the part with a usual name (rgba, beauty, Combined ...), else the first one with R G B that is no known pass. A plain channel of another
-/// part becomes PART.channel. Of several views (of parts, or in the file's `multi_view`) the first is taken, without its name. Of channels
-/// that would have one name the first stays.
+/// A file of one part keeps its names. In a file of several parts, a channel with a dot in its name (of a layer) keeps it, and so do the
+/// channels of the beauty: the part with a usual name (rgba, beauty, Combined ...), else the first part with R G B that is no known pass. A
+/// plain channel of any other part becomes PART.channel. Of several views (of parts, or in the file's `multi_view`) the first is taken,
+/// without its name. Of channels that would get the same name the first stays.
 ExrNames frame_names(const std::vector<ExrPart>& parts, const std::vector<std::string>& multi_view);
 
 } // namespace clvr

@@ -136,7 +136,7 @@ void add_attributes(const Imf::Header& header, Frame& frame) {
     }
 }
 
-/// Colours of other primaries are not converted: said.
+/// Notes that colours of other primaries are not converted.
 void note_primaries(const Imf::Header& header, Frame& frame) {
     if (!Imf::hasChromaticities(header)) return;
     const Imf::Chromaticities theirs = Imf::chromaticities(header), srgb;
@@ -155,7 +155,7 @@ void spread_luminance(Frame& frame) {
     frame.notes.push_back("is grey: its channel Y is taken as R, G and B");
 }
 
-/// The parts that the frame takes channels of.
+/// The parts from which the frame takes channels.
 std::vector<Part> chosen_parts(const Imf::MultiPartInputFile& file, Frame& frame) {
     std::vector<ExrPart> parts;
     std::vector<std::string> views;
@@ -189,7 +189,7 @@ std::vector<Part> chosen_parts(const Imf::MultiPartInputFile& file, Frame& frame
     return chosen;
 }
 
-/// Size and place of the frame: what the parts' data windows reach together.
+/// Size and place of the frame: the box around the data windows of its parts.
 void set_windows(const Imf::MultiPartInputFile& file, const std::vector<Part>& parts, Frame& frame) {
     Imath::Box2i all;
     std::size_t pixels = 0;

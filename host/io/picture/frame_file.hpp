@@ -16,7 +16,7 @@ void write_exr(const Frame& frame, const std::string& path);
 Frame read_exr(const std::string& path);
 
 /// The part that the frame shows as 8-bit sRGB PNG, RGBA with straight alpha when alpha is not 1 everywhere, else RGB. Exposure and curve
-/// act on the straight colour C / A: the colour of a silhouette is that of the surface beside it, over every page that the picture is laid
+/// act on the straight colour C / A: so a silhouette has the colour of the surface beside it, over any page that the picture is laid
 /// on. Throws Error{input, usage}.
 std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap);
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);

@@ -164,7 +164,7 @@ Frame decode(const std::string& bytes) {
     Cursor at{bytes};
     const Header h = read_header(at);
     std::vector<unsigned char> line(4 * static_cast<std::size_t>(h.line_pixels)), all;
-    for (int y = 0; y < h.lines; ++y) { // grows with what the file holds: an empty one that promises much ends here
+    for (int y = 0; y < h.lines; ++y) { // memory grows with what the file holds, so a short file that promises much ends here
         read_line(at, line, static_cast<std::size_t>(y));
         all.insert(all.end(), line.begin(), line.end());
     }

@@ -4,10 +4,10 @@
 
 namespace clvr {
 
-/// A negative spacing turns its axis round; a direction that is no unit vector gives its length to the spacing.
+/// A negative spacing reverses its axis; the length of a direction that is no unit vector goes into the spacing.
 void settle_axes(Geometry& g);
-/// Gives the axes from `given` on directions of their own (spacing 1): the world's axis of that number where it spans space with the
-/// given ones, else one perpendicular to them.
+/// Gives the axes from number `given` on a direction (spacing 1): the world's axis of that number where it is independent of the given
+/// axes, else one perpendicular to them.
 void complete_axes(Geometry& g, int given);
 
 } // namespace clvr

@@ -14,7 +14,7 @@ constexpr const char* no_spacing = "the file gives no voxel spacing: 1 mm is ass
 
 bool is_given(const AxisScale& s) { return s.value > 0 && std::isfinite(s.value); }
 
-/// Lengths where at least one axis has a known unit: the others take that of an axis before them, else behind them.
+/// Lengths where at least one axis has a known unit: the others take the unit of an earlier axis, else of a later one.
 ResolvedSpacing with_units(const AxisScales& scales, const std::array<std::optional<double>, 3>& mm, std::size_t slices) {
     ResolvedSpacing r;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// Bytes that are pulled forward: what the readers of text-header formats are composed of.
+// Sources of bytes, read from front to back: the readers of formats with a text header are composed of them.
 #pragma once
 #include "host/io/byte_stream.hpp"
 #include "host/io/volume/samples.hpp"
@@ -46,8 +46,8 @@ private:
     std::string_view left_;
 };
 
-/// One index of an axis: of each `count` blocks of `block` bytes in a row, the one at `index`. Reads must be of whole samples, and so
-/// must the blocks be.
+/// One index of an axis: of each `count` blocks of `block` bytes in a row, the one at `index`. Reads must be whole samples, and so must
+/// blocks.
 class PickedBytes final : public ByteSource {
 public:
     PickedBytes(ByteSource& from, std::uint64_t block, std::uint64_t count, std::uint64_t index);

@@ -9,7 +9,7 @@ struct DatasetPath {
     std::string file, inside;
 };
 
-/// Splits at the first ":" behind the name of a file that there is; where there is none, or all of `path` is a file or folder, the whole
+/// Splits at the first ":" that follows the name of an existing file; where there is none, or all of `path` is a file or folder, the whole
 /// is the file.
 DatasetPath split_dataset_path(const std::string& path);
 /// What `path` may mean where a part of it is a file, as in FILE/path/of/dataset; `inside` is empty where no part is.

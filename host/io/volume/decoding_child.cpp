@@ -20,7 +20,7 @@ namespace clvr {
 
 namespace {
 
-/// What a message of the child is; its bytes follow. An error's bytes are its text.
+/// The kind of a message of the child; its bytes follow. The bytes of an error are its text.
 enum class Kind : std::uint32_t { data, input_error, memory_error, end };
 struct Message {
     Kind kind;
@@ -46,7 +46,7 @@ void send(int pipe, Kind kind, const void* from, std::size_t bytes) {
     } while (bytes > 0);
 }
 
-/// No dump, no word on the terminal, no more memory than given. Ctrl-C and a terminal that goes are the parent's to answer.
+/// For the child: no core dump, no output on the terminal, no more memory than given. Ctrl-C and a closing terminal are left to the parent.
 void confine(std::size_t memory_bytes) {
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGPIPE, SIGTERM}) std::signal(signal, SIG_DFL);
     for (const int signal : {SIGINT, SIGHUP}) std::signal(signal, SIG_IGN);

@@ -7,14 +7,14 @@
 
 namespace clvr {
 
-/// A child process whose work sends bytes to this one. The library that decodes can crash, hang or ask for all memory there: here that
-/// is an Error. What the work throws as Error is thrown here by `read`.
+/// A child process whose work sends bytes to this one. There the library that decodes can crash, hang or ask for all memory: here that is
+/// an Error. An Error that the work throws is thrown here by `read`.
 class DecodingChild {
 public:
     using Send = std::function<void(const void* from, std::size_t bytes)>;
 
-    /// Starts the work; `file` is named where it fails, `library` is what decodes. The child may use `memory_bytes` more than there are
-    /// when it starts.
+    /// Starts the work. `file` is named where it fails, `library` is what decodes. The child may use `memory_bytes` beyond what the process
+    /// uses at the start.
     DecodingChild(std::string file, std::string library, std::size_t memory_bytes, const std::function<void(const Send& send)>& work);
     ~DecodingChild();
     DecodingChild(const DecodingChild&) = delete;

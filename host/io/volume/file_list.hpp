@@ -13,7 +13,7 @@ struct NumberedFiles {
     std::string pattern;
     std::vector<std::int64_t> numbers; ///< what stands behind the name: min, max, step, ...
 };
-/// Parts a value that ends in at least `least` whole numbers behind a name with one "%d" (with flags and width: "%03d"). Nothing for any
+/// Splits a value that ends in at least `least` whole numbers after a name with one "%d" (with flags and width: "%03d"). Nothing for any
 /// other text: a % in a name is no pattern by itself.
 std::optional<NumberedFiles> numbered_files(std::string_view value, std::size_t least);
 

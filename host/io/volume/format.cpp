@@ -55,7 +55,7 @@ bool mgh_header(const std::string& head) {
 
 const std::string hdf5_mark{"\x89HDF\r\n\x1a\n"};
 
-/// HDF5 files may start with a block of their writer's: then the mark stands at byte 512, 1024, 2048, ...
+/// HDF5 files may start with a block of the program that wrote them: then the mark stands at byte 512, 1024, 2048, ...
 bool has_late_hdf5_mark(const std::string& path) {
     const std::uint64_t size = std::filesystem::file_size(path);
     std::string found(hdf5_mark.size(), '\0');
@@ -71,7 +71,7 @@ bool has_nifti_header_beside(const std::string& path) {
     return !header.empty() && nifti_size(read_head_inside(header, 540));
 }
 
-/// Formats whose mark no voxels of a RAW file start with by chance.
+/// Formats with a mark so long that no RAW file starts with it by chance.
 bool has_sure_mark(VolumeFormat f) {
     return f == VolumeFormat::nrrd || f == VolumeFormat::vtk || f == VolumeFormat::png || f == VolumeFormat::numpy ||
            f == VolumeFormat::hdf5;

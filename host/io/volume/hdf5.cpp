@@ -22,7 +22,7 @@ json to_json(const Hdf5Volume& h) {
         std::uint64_t step = 1;
         for (std::size_t i = axis ? *axis + 1 : 0; i < h.count.size(); ++i) step *= h.count[i];
         size.push_back(axis ? h.count[*axis] : 1);
-        stride.push_back(step); // an axis that is not there: all values are before its second entry
+        stride.push_back(step); // an axis that does not exist has one entry: a step over all values
     }
     const Voxels& v = h.described;
     std::vector<double> direction;

@@ -11,7 +11,7 @@ namespace clvr {
 namespace {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
-constexpr std::uint64_t deflate_ratio = 1032; // no filter of HDF5 that is not refused packs tighter, but for constant chunks
+constexpr std::uint64_t deflate_ratio = 1032; // the greatest ratio of the accepted HDF5 filters, but for constant chunks
 constexpr std::size_t greatest_attribute = std::size_t{1} << 20;
 
 /// An identifier of the library, closed at the end; negative where opening failed.

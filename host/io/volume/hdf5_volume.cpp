@@ -102,7 +102,7 @@ std::optional<Double3> element_size(const Hdf5File& file, const Hdf5Volume& h) {
     return spacing;
 }
 
-/// Names an attribute that may mean voxel sizes in a unit that nobody states.
+/// Notes an attribute that may hold voxel sizes in a unit that is not stated.
 void say_unknown_sizes(const Hdf5File& file, Hdf5Volume& h) {
     for (const char* name : {"spacing", "resolution", "voxel_size", "voxelsize", "pixel_size", "element_size"})
         if (!file.numbers(h.data.path, name).empty())

@@ -19,8 +19,8 @@ std::vector<std::int64_t> parse_integers(std::string_view text, std::size_t coun
 std::vector<double> parse_finite(std::string_view text, std::size_t count, const char* field, const std::string& path);
 /// `count` voxel sizes, all finite and not 0. Throws Error{input} naming file and field.
 std::vector<double> parse_spacing(std::string_view text, std::size_t count, const char* field, const std::string& path);
-/// The path of a file that a header names, relative to the header's folder: by its very name, else by the only one that differs in case
-/// alone; "\\" parts folders where no file has it in its name. Throws Error{input} when there is none.
+/// The path of a file that a header names, relative to the header's folder: by the exact name, else by the only name that differs in case
+/// alone; "\\" separates folders where no file has it in its name. Throws Error{input} when there is none.
 std::string beside(const std::string& header, const std::string& name);
 
 } // namespace clvr

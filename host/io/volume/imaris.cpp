@@ -21,7 +21,7 @@ double number(const Hdf5File& file, const std::string& attribute) {
     return values->front();
 }
 
-/// How many there are of "/... N/..." from N = 0 on.
+/// How many groups "/... N/..." there are, counted from N = 0.
 template <class Name>
 std::int64_t count_groups(const Hdf5File& file, Name&& name) {
     constexpr std::int64_t most = 100000;

@@ -33,7 +33,7 @@ SampleType sample_type(const std::string& name, Voxels& v) {
     return t->second;
 }
 
-/// The first of several tags for one thing that the header has; each that it has is checked, and said where they contradict.
+/// Of several tags with the same meaning, the first that the header has. All that it has are checked; a contradiction is noted.
 template <class Parse>
 std::optional<std::vector<double>> first_of(const MetaHeader& h, std::initializer_list<const char*> tags, const Parse& parse, Voxels& v) {
     std::optional<std::vector<double>> taken;

@@ -66,7 +66,7 @@ SampleType sample_type(const HeaderBytes& h, const std::string& path, std::vecto
     }
 }
 
-/// Which of x, y, z (0 to 2) the columns, rows and sections of the file are.
+/// Which of x, y, z (0 to 2) the file's columns, rows and sections stand for.
 std::array<std::size_t, 3> axes_of(const HeaderBytes& h, const std::string& path, std::vector<std::string>& decisions) {
     std::array<std::int32_t, 3> map;
     for (std::size_t i = 0; i < 3; ++i) map[i] = h.at<std::int32_t>(word(17 + i));

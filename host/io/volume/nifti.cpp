@@ -65,7 +65,8 @@ struct Files {
     NiftiHeader h;
 };
 
-/// The bytes decide whether one file holds both, then the names: P.hdr and P.img in any case, compressed or not, each named for both.
+/// The bytes decide whether one file holds both; then the names: P.hdr and P.img, upper or lower case, compressed or not, of which the user
+/// may name either.
 Files files_of(const std::string& path, HeaderRemarks& remarks) {
     Files f;
     f.header = path;

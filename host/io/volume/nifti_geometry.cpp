@@ -36,7 +36,7 @@ Affine sform_of(const NiftiHeader& h) {
     return a;
 }
 
-/// How far b, c, d of the quaternion are from what a rotation allows: its first part squared, below 0 where they are too long.
+/// The square of the first part of the quaternion, from b, c, d; below 0 where they are too long for a rotation.
 double first_part_squared(const NiftiHeader& h) {
     const auto [b, c, d] = h.quatern;
     return 1 - (b * b + c * c + d * d);
@@ -120,7 +120,7 @@ Affine choose(const NiftiHeader& h, const std::array<std::int64_t, 8>& sizes, co
             remarks.decisions.push_back("sform and qform disagree: the sform is taken");
         return sform;
     }
-    std::string because; // what was passed over
+    std::string because; // why the other forms were passed over
     if (h.sform > 0) because = fmt::format("the sform is not usable ({})", sform_defect);
     if (h.qform > 0 && !qform_usable)
         because +=

@@ -23,7 +23,7 @@ struct NiftiHeader {
     std::array<std::array<double, 4>, 3> srow;
 };
 
-/// What a reader says of a header beside the voxels: as Voxels.notes and Voxels.decisions.
+/// What a reader says about a header: becomes Voxels.notes and Voxels.decisions.
 struct HeaderRemarks {
     std::vector<std::string> notes, decisions;
 };

@@ -4,7 +4,7 @@
 
 namespace clvr {
 
-/// What a file of these first bytes is and what to do, where they are the mark of a kind that is no volume of clvr's; else empty.
+/// What the file is and what to do with it, where its first bytes are the mark of a kind that clvr does not read; else empty.
 std::string other_kind_of_head(const std::string& head);
 /// The same by the file's name, in any case, for a file whose bytes say nothing.
 std::string other_kind_of_name(const std::string& path);

@@ -11,7 +11,7 @@ struct NameNumber {
     std::string whole, fraction; ///< digits; `fraction` is empty where there is no point
     std::string text() const;    ///< as it is spelled, without plus
     double value() const;
-    /// Digits that count, beyond which `value` is not exact above 15.
+    /// Significant digits; with more than 15, `value` is not exact.
     std::size_t digits() const;
 };
 /// By value.

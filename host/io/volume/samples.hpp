@@ -72,7 +72,7 @@ struct SampleOrder {
     /// x fastest, then y, then z, from `start` on.
     static SampleOrder plain(const Int3& dims, std::uint64_t start = 0);
 };
-/// As read_samples, for samples in another order: reads `samples` of them, which all of v's lie within, and holds them beside v.
+/// As read_samples, for samples in another order: reads `samples` of them, among which are all of v's, and holds them beside v.
 void read_reordered(const ReadBytes& from, SampleType type, bool swapped, std::uint64_t samples, const SampleOrder& order, Voxels& v);
 
 /// Sets what all readers set alike: source, format, a note of a widened type.

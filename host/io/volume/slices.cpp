@@ -16,7 +16,7 @@ namespace {
 std::vector<NumberedName> names_of_one_stack(const std::string& folder, const std::vector<std::string>& files) {
     const auto relative = [&](const std::string& file) { return std::filesystem::path(file).lexically_relative(folder).string(); };
     std::map<std::string, std::vector<NumberedName>> first_try;
-    for (const bool signs_after_letters : {false, true}) { // z-1, z0, z1: a minus that not all have is a sign
+    for (const bool signs_after_letters : {false, true}) { // z-1, z0, z1: where only some have a minus, it is a sign
         std::map<std::string, std::vector<NumberedName>> stacks;
         for (const std::string& f : files) {
             NumberedName n = numbered_name(relative(f), signs_after_letters);
@@ -37,7 +37,7 @@ std::vector<NumberedName> names_of_one_stack(const std::string& folder, const st
              most.size() == 1 ? " is" : "s are", most.front().name, other.size(), other.front().name, more);
 }
 
-/// Whether the points in column `c` are no decimal ones: 1.1, 1.2, ... 1.10.
+/// Whether the points in column `c` are not decimal points: 1.1, 1.2, ... 1.10.
 bool counts_behind_point(const std::vector<NumberedName>& names, std::size_t c) {
     std::set<std::string> wholes;
     std::set<NameNumber> fractions;

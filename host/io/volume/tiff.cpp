@@ -69,8 +69,8 @@ ChosenChannel choose_channel(const TiffLayout& layout, const TiffFile& file, con
     return {chosen / form.samples, static_cast<std::uint16_t>(chosen % form.samples)};
 }
 
-/// More channels than microscopes have, of one plane each and without names, are the slices of a stack whose writer did not know the axis,
-/// unless the user asks for one.
+/// A file with more channels than microscopes have, each of one plane and without a name, is a stack of slices whose writer did not know
+/// the z axis; unless the user asks for a channel.
 void take_channels_as_slices(TiffLayout& layout, const TiffForm& form, const VolumeReadOptions& options, Voxels& v) {
     constexpr int usual_channels = 4;
     const bool asked = options.channel && form.samples == 1; // of pixels with several samples, --channel means one of those
@@ -82,7 +82,7 @@ void take_channels_as_slices(TiffLayout& layout, const TiffForm& form, const Vol
     for (TiffPlane& p : layout.planes) std::swap(p.slice, p.channel);
 }
 
-/// Without a z axis, times are the third one: a rule that does not depend on --frame.
+/// Without a z axis, time is the third axis, whether or not --frame is given.
 void take_times_as_slices(TiffLayout& layout, const TiffForm& form, Voxels& v) {
     if (layout.slices > 1 || form.depth > 1 || layout.times == 1) return;
     v.notes.push_back(fmt::format("the file has no z axis: its {} times (frames) are taken as slices", layout.times));

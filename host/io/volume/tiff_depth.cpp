@@ -11,7 +11,7 @@ namespace {
 /// Strips or tiles: each `width` x `height` x `depth`, x fastest, with what sticks out of the page.
 struct Blocks {
     std::uint64_t width, height, depth;
-    bool padded; ///< tiles are whole where they stick out of the page, strips end with it
+    bool padded; ///< tiles that reach beyond the page are stored whole, strips end with the page
     TiffEntry offsets, counts;
 };
 

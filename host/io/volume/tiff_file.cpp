@@ -118,7 +118,7 @@ std::optional<TiffEntry> TiffFile::entry(std::uint16_t tag) const {
     return std::nullopt;
 }
 
-/// libtiff takes a directory whose link to the next one is cut off for the last: the file must hold the link of the current one.
+/// libtiff takes a directory for the last one where its link to the next is cut off; so this checks that the file holds the link.
 void TiffFile::check_link() const {
     const bool wide = TIFFIsBigTIFF(get());
     const std::uint64_t at = TIFFCurrentDirOffset(get()), entries = integer(at, wide ? 8 : 2);

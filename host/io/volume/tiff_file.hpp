@@ -1,4 +1,4 @@
-// An open TIFF file: libtiff, whose every error is one of clvr's, and the bytes themselves where libtiff does not look.
+// An open TIFF file: libtiff, whose errors become clvr's, and the bytes themselves where libtiff does not look.
 #pragma once
 #include "host/io/volume/samples.hpp"
 

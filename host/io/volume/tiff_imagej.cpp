@@ -55,7 +55,7 @@ void set_scales(const TiffFile& file, const ImageJFields& fields, bool is_stack,
     std::uint16_t tag_unit = RESUNIT_NONE;
     if (unit.empty() && TIFFGetField(file.get(), TIFFTAG_RESOLUTIONUNIT, &tag_unit)) {
         if (tag_unit == RESUNIT_CENTIMETER) unit = "cm";
-        if (tag_unit == RESUNIT_INCH && x > 1 && x != 72) unit = "inch"; // 72 and 1 are what programs write that know none
+        if (tag_unit == RESUNIT_INCH && x > 1 && x != 72) unit = "inch"; // 72 and 1 are written by programs that do not know the resolution
     }
     const auto own_unit = [&](const char* name) { return fields.text(name).empty() ? unit : unescaped(fields.text(name)); };
     const auto spacing = fields.number("spacing");

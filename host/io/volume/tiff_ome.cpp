@@ -66,7 +66,7 @@ std::set<std::string> file_names(const pugi::xml_node& root) {
     return names;
 }
 
-/// The metadata stand in a file beside where this one only names it.
+/// The metadata may be in another file, which this one names.
 pugi::xml_node follow_binary_only(pugi::xml_document& document, const pugi::xml_node& root, const std::string& path) {
     const pugi::xml_node only = child(root, "BinaryOnly");
     if (!only) return root;
@@ -170,7 +170,7 @@ private:
             layout_.planes.push_back(std::move(p));
         }
     }
-    /// The file that a TiffData element speaks of; empty for this one, also where it was renamed.
+    /// The file that a TiffData element names; empty for this file, also where it was renamed.
     std::string file_of(const pugi::xml_node& data) {
         const auto uuid = child(data, "UUID");
         const std::string name = fs::path(uuid.attribute("FileName").value()).filename().string(), own = source_.file.path();
@@ -179,7 +179,7 @@ private:
         const fs::path beside = fs::path(own).parent_path() / name;
         std::error_code error;
         if (fs::exists(beside, error)) return beside.string();
-        if (only_name_.empty()) return beside.string(); // found missing where its planes are wanted
+        if (only_name_.empty()) return beside.string(); // reported as missing when its planes are read
         layout_.decisions.push_back(fmt::format("its OME-XML calls the file \"{}\": it was renamed", name));
         return "";
     }

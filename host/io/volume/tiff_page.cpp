@@ -15,7 +15,7 @@ namespace {
 // No codec of libtiff packs a page tighter than this; zstd comes nearest.
 constexpr std::uint64_t greatest_ratio = 40000;
 
-/// What is known to stand in TIFF files; libtiff has only some of them.
+/// Codecs that occur in TIFF files; libtiff has only some of them.
 std::string codec_name(std::uint16_t compression) {
     static const std::map<std::uint16_t, const char*> names{
         {6, "old-style JPEG"},  {9, "JBIG T.85"},     {10, "JBIG T.43"},     {22610, "JPEG XR"},
@@ -44,7 +44,7 @@ void check_codec(const TiffFile& file, std::uint16_t bits, std::uint16_t sample_
         bad_file(file.path(), "predictor {} with {} bits is not supported: save it without a predictor", predictor, bits);
 }
 
-/// Whether a colour table shows each value as a grey that rises (or falls) with it: then the values are what is meant.
+/// Whether a colour table gives each value a grey that rises (or falls) with it: then the values themselves are data.
 bool is_grey_ramp(const TiffFile& file, std::uint16_t bits) {
     std::uint16_t *red = nullptr, *green = nullptr, *blue = nullptr;
     if (bits > 16 || !TIFFGetField(file.get(), TIFFTAG_COLORMAP, &red, &green, &blue)) return false;

@@ -57,7 +57,7 @@ std::uint64_t product_of(const std::vector<Axis>& axes) {
     return n;
 }
 
-/// Which of z, c, t each axis of more than 1 is: known letters by themselves, one unknown as z where there is none.
+/// Which of z, c, t each axis of more than one entry is: by its letter where that is known; one unknown axis is z where z is missing.
 std::string roles_of(const TiffSource& source, const std::vector<Axis>& axes, bool page_has_depth, TiffLayout& layout) {
     std::string roles, unknown, text;
     for (const Axis& a : axes) {

@@ -37,7 +37,7 @@ struct SliceFormat {
     const char* name;
     SliceReader read;
 };
-/// Pictures of the first that a folder has are its slices; the others are previews or copies of them.
+/// Formats of slices. Those of the first format that a folder has are its slices; pictures of the others are previews or copies.
 constexpr std::array slice_formats{SliceFormat{VolumeFormat::tiff, "TIFF", read_tiff},
                                    SliceFormat{VolumeFormat::png, "PNG", read_png_slices},
                                    SliceFormat{VolumeFormat::jpeg, "JPEG", read_jpeg_slices}};
@@ -73,7 +73,7 @@ Voxels read_slices(const std::string& path, const std::map<VolumeFormat, std::ve
     return std::move(*v);
 }
 
-/// What to do with pictures that are not read.
+/// Advice for pictures that clvr does not read.
 std::string bitmaps(const std::vector<std::string>& files) {
     const auto is_bitmap = [](const std::string& file) { return ends_with(lower_case(file), ".bmp"); };
     const auto n = std::count_if(files.begin(), files.end(), is_bitmap);
@@ -129,7 +129,7 @@ const std::map<VolumeFormat, Reader> readers{
     {VolumeFormat::numpy, read_numpy},    {VolumeFormat::mrc, read_mrc},        {VolumeFormat::mgh, read_mgh},
     {VolumeFormat::hdf5, read_hdf5},      {VolumeFormat::raw, read_raw}};
 
-/// Formats that --spacing speaks to: theirs may have none.
+/// Formats for which --spacing counts, as their files may hold no spacing.
 bool takes_spacing(const std::string& format) {
     for (const char* taker : {"RAW", "TIFF", "PNG", "JPEG", "NumPy", "MRC", "HDF5", "Imaris"})
         if (starts_with(format, taker)) return true;

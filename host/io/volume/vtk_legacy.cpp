@@ -63,7 +63,7 @@ private:
         return *line;
     }
 
-    /// Returns whether to go on.
+    /// Returns whether more follows.
     bool take_line(const std::string& line) {
         std::istringstream words(line);
         std::string key, rest;

@@ -10,8 +10,8 @@
 
 namespace clvr {
 
-/// A file that belongs to its series but cannot be used, as a value that decides its place or its voxels is no number, or as pixels are
-/// missing: it is not to be left out in silence.
+/// A file that belongs to its series but cannot be used, because a value for its place or its voxels is no number, or because pixels are
+/// missing. It must not be left out in silence.
 class DicomSliceError : public Error {
 public:
     using Error::Error;

@@ -1,4 +1,4 @@
-// One slice of a DICOM file: the unit of which volumes are made, whether a file holds one frame, many, or a mosaic.
+// One slice of a DICOM file. Volumes are made of these, whether a file holds one frame, many frames, or a mosaic.
 #pragma once
 #include "host/io/volume/dicom/file.hpp"
 #include "host/io/volume/samples.hpp"

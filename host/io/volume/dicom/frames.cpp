@@ -13,7 +13,7 @@ namespace {
 
 using namespace dicom_tag;
 
-/// Slope and intercept of all frames, by the data set itself.
+/// Slope and intercept of all frames, where the data set itself has them.
 void read_scale(DicomFrame& frame, const DicomElements& data) {
     const std::string& path = frame.image->path;
     frame.slope = data.decimal(rescale_slope, "RescaleSlope", path).value_or(1);

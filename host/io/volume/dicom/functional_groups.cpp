@@ -51,7 +51,7 @@ void read_labels(const FrameGroups& groups, DicomFrame& frame) {
     frame.stack = groups.with(frame_content, stack_id).text(stack_id);
 }
 
-/// Slope and intercept, where the groups have them. A parametric map has its scale beside: its rescale is 1 and 0.
+/// Slope and intercept, where the groups have them. A parametric map has its scale elsewhere; its rescale is 1 and 0.
 void read_scale(const FrameGroups& groups, bool is_map, DicomFrame& frame) {
     const std::string& path = frame.image->path;
     const auto set = [](double& to, std::optional<double> value) { to = value.value_or(to); };

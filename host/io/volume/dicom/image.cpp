@@ -15,7 +15,7 @@ namespace {
 
 using namespace dicom_tag;
 
-/// Whole bits that hold a value as the pixels do: the sign is filled in.
+/// A value of an element as the pixels hold it: the sign fills the upper bits.
 double pixel_value(std::uint32_t bits, std::size_t bytes, const DicomPixels& p) {
     if (!p.is_signed) return bits;
     if (p.bits_stored < 32 && (bits >> p.bits_stored) == 0) { // written with as many bits as the pixels

@@ -24,7 +24,7 @@ double usual_step(const std::vector<double>& along, double rounding) {
     return std::accumulate(first, last, 0.0) / static_cast<double>(last - first);
 }
 
-/// How far each place lies above the line that fits all best, as a function of its index.
+/// How far each place lies above the best line through all places as a function of their index.
 std::vector<double> residuals(const std::vector<double>& along, const std::vector<std::size_t>& index) {
     const auto n = static_cast<double>(along.size());
     double mean_x = 0, mean_y = 0, xx = 0, xy = 0;
@@ -40,7 +40,7 @@ std::vector<double> residuals(const std::vector<double>& along, const std::vecto
     return off;
 }
 
-/// The regular place of each given one, each gap counted by itself.
+/// The regular place of each given place; each gap is counted by itself.
 std::vector<std::size_t> count_steps(const std::vector<double>& along, double usual) {
     constexpr double most_steps = 1e9;
     std::vector<std::size_t> index{0};

@@ -1,4 +1,4 @@
-// The regular distances of a series' slices, from positions that are rounded or jitter.
+// The regular distance between the slices of a series, from positions that are rounded or jitter.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -102,7 +102,7 @@ class SliceLoader {
 public:
     SliceLoader(DicomPixelReader& reader, const VoxelScale& scale) : reader_(reader), scale_(scale) {}
 
-    /// The reader's next slice, which is `f`, becomes the voxels from `first` on; `padding` is set where it has any.
+    /// Stores the reader's next slice, which is `f`, as the voxels from `first` on; sets `padding` where the slice has any.
     void operator()(const DicomFrame& f, Voxels& v, std::size_t first, std::vector<bool>& padding) {
         const SampleType type = f.image->pixels.type();
         std::vector<bool>* const marks = f.image->padding ? &padding : nullptr;

@@ -11,8 +11,8 @@ struct DicomMosaic {
 };
 /// Nothing where the picture is no mosaic.
 std::optional<DicomMosaic> mosaic_of(const DicomElements& data, const DicomImage& image);
-/// The slices of the picture `whole`, which lies where the mosaic as one slice would, with slices `step` apart [mm]. Throws Error{input}
-/// where the file does not say enough.
+/// The slices of the picture `whole`, which is placed as if the mosaic were one slice; the slices are `step` apart [mm]. Throws
+/// Error{input} where the file does not say enough.
 std::vector<DicomFrame> mosaic_slices(const DicomMosaic& mosaic, const DicomFrame& whole, std::optional<double> step);
 
 } // namespace clvr

@@ -47,7 +47,7 @@ void clean(unsigned char* pixels, std::size_t n, int bits_above, int unused_bits
     }
 }
 
-/// Cleans a picture and marks its padding. A padding value beyond the stored bits is one of the whole sample, before it is cleaned.
+/// Cleans a picture and marks its padding. A padding value beyond the stored bits is compared with the whole sample, before cleaning.
 template <class T>
 void finish(std::vector<unsigned char>& picture, const DicomImage& image, std::vector<bool>& marks) {
     const DicomPixels& p = image.pixels;
@@ -128,7 +128,7 @@ bool decode_fragments(const DicomFrame& frame, std::vector<unsigned char>& to) {
     std::signal(SIGPIPE, SIG_DFL); // the parent gave up: end
     const int nowhere = open("/dev/null", O_WRONLY);
     dup2(nowhere, STDOUT_FILENO);
-    dup2(nowhere, STDERR_FILENO); // codecs and assertions talk
+    dup2(nowhere, STDERR_FILENO); // codecs and assertions print messages
     try {
         std::vector<unsigned char> pixels;
         const DicomFrame* last = nullptr;

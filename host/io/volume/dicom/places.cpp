@@ -14,7 +14,8 @@ constexpr double same_place_mm = 1e-3;
 
 auto order_in_place(const DicomFrame& f) { return std::make_tuple(f.image->acquisition, f.time, f.image->instance, f.number); }
 
-/// Whether b is a copy of a's file: what a file says of itself agrees, not its UID alone (some programs write one UID into all files).
+/// Whether b is a copy of a's file: what the files say about themselves agrees. The UID alone does not tell, as some programs write one UID
+/// into all files.
 bool is_copy(const DicomFrame& a, const DicomFrame& b) {
     return !a.image->instance_uid.empty() && a.image->instance_uid == b.image->instance_uid && order_in_place(a) == order_in_place(b) &&
            a.labels == b.labels && a.stack == b.stack && norm(a.place.position - b.place.position) <= same_place_mm;
@@ -22,8 +23,8 @@ bool is_copy(const DicomFrame& a, const DicomFrame& b) {
 
 using Labels = std::map<std::string, std::string>;
 
-/// Orders each place by acquisition, time and number. Where that mixes what the labels tell apart (numbers that go on from slice to slice
-/// in another order), the labels come first, in the order in which they appear.
+/// Orders the slices of each place by acquisition, time and number. Where that would mix what the labels tell apart (numbers that continue
+/// from slice to slice in another order), the labels come first, in the order in which they appear.
 void sort_places(std::vector<SlicesAtPlace>& places, const Frames& frames) {
     const auto by_number = [&](std::size_t a, std::size_t b) { return order_in_place(frames[a]) < order_in_place(frames[b]); };
     for (SlicesAtPlace& p : places) std::stable_sort(p.slices.begin(), p.slices.end(), by_number);
@@ -47,7 +48,7 @@ void sort_places(std::vector<SlicesAtPlace>& places, const Frames& frames) {
     if (!agree()) by_label.swap(places);
 }
 
-/// "EchoTime 4.9, 9.8; time": in what the slices of a place differ.
+/// How the slices of a place differ: "EchoTime 4.9, 9.8; time".
 std::string differences(const SlicesAtPlace& place, const Frames& frames) {
     std::map<std::string, std::vector<std::string>> values;
     const auto keep = [&](const std::string& name, const std::string& value) {
@@ -76,7 +77,8 @@ std::string differences(const SlicesAtPlace& place, const Frames& frames) {
 /// What makes slices one set: all but their number.
 auto set_of(const DicomFrame& f) { return std::make_tuple(f.labels, f.stack, f.image->acquisition, f.time); }
 
-/// Where places hold different numbers of slices: those of the set that is at every place, the first such; else all stay.
+/// For places with different numbers of slices: keeps the slices of the first set that is at every place; keeps all where there is no such
+/// set.
 bool keep_whole_set(std::vector<SlicesAtPlace>& places, const Frames& frames) {
     for (const std::size_t candidate : places.front().slices) {
         const auto set = set_of(frames[candidate]);
@@ -91,7 +93,7 @@ bool keep_whole_set(std::vector<SlicesAtPlace>& places, const Frames& frames) {
     return false;
 }
 
-/// Where no set is at every place: echoes and types are not mixed, those with the most places stay. Returns whether any went.
+/// Where no set is at every place: echoes and types are not mixed; those at the most places stay. Returns whether any slice was dropped.
 bool keep_largest_kind(std::vector<SlicesAtPlace>& places, const Frames& frames) {
     std::map<Labels, std::size_t> at; // how many places have it
     for (const SlicesAtPlace& p : places) {

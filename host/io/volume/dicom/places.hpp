@@ -14,7 +14,7 @@ struct SlicesAtPlace {
     std::vector<std::size_t> slices;
 };
 
-/// In ascending order along `normal`. Copies of files are dropped (noted): what a file says of itself agrees, not its UID alone.
+/// In ascending order along `normal`. Copies of files are dropped, which is noted; a copy agrees in all that it says about itself.
 std::vector<SlicesAtPlace> places_of(const std::vector<DicomFrame>& frames, std::vector<std::size_t> stack, const Double3& normal,
                                      std::vector<std::string>& notes);
 std::size_t slices_in(const std::vector<SlicesAtPlace>& places);
@@ -25,8 +25,9 @@ struct FrameChoice {
     std::size_t times = 1; ///< how many slices every place has
     std::vector<std::string> notes;
 };
-/// Frame `frame` where every place has as many, in the order of their times, echoes or numbers; else the first of the set that is at every
-/// place, or of all. What stays out is noted. Sorts `places`. Throws Error{input} with `where` for a frame that is not there.
+/// Frame number `frame` where every place has that many slices, in the order of their times, echoes or numbers; else the first slice of the
+/// set that is at every place, or of all. What is left out is noted. Sorts `places`. Throws Error{input} with `where` for a frame that does
+/// not exist.
 FrameChoice choose_frame(std::vector<SlicesAtPlace>& places, const std::vector<DicomFrame>& frames, int frame, const std::string& where);
 
 } // namespace clvr

@@ -28,7 +28,7 @@ struct Scan {
     std::vector<std::string> left_out; ///< why, a file a line
 };
 
-/// A damaged file is refused, as it may be a slice; with `allow_gaps`, and where it is sound but no slice of grey values, it is left out.
+/// A damaged file is refused, as it may be a slice. It is left out with `allow_gaps`; so is a sound file that is no slice of grey values.
 Scan scan(const std::vector<std::string>& paths, const std::optional<std::string>& wanted, bool allow_gaps) {
     Scan found;
     for (const std::string& path : paths) {
@@ -59,7 +59,7 @@ Scan scan(const std::vector<std::string>& paths, const std::optional<std::string
     return found;
 }
 
-/// The stack of a series that would be its volume, and how good a volume that is.
+/// The stack that would become the volume of a series, and how good that volume would be.
 struct Candidate {
     std::string series;
     std::vector<std::size_t> stack;
@@ -75,7 +75,7 @@ struct Candidate {
     }
 };
 
-/// The number of different places; 0 where the stack has none that can be told.
+/// The number of different places; 0 where they cannot be told.
 std::size_t count_places(const std::vector<DicomFrame>& frames, const std::vector<std::size_t>& stack, const std::string& path,
                          std::string& problem) {
     try {

@@ -13,7 +13,7 @@ using Stack = std::vector<std::size_t>;
 
 bool is_localizer(const DicomFrame& f) { return f.image->image_type.find("LOCALIZER") != std::string::npos; }
 
-/// But for StackID.
+/// Whether two slices can lie in one stack, apart from their StackID.
 bool alike(const DicomFrame& a, const DicomFrame& b) {
     constexpr double same_direction = 2e-3; // a rounding of 1e-3 in each coordinate
     const DicomPixels &p = a.image->pixels, &q = b.image->pixels;

@@ -1,4 +1,4 @@
-// The light on one device: the arguments LIGHT_ARGS of the kernels.
+// View and lights on one device: the arguments LIGHT_ARGS of the kernels.
 #pragma once
 #include "host/render/environment.hpp"
 #include "kernels/shared/render_params.h"
@@ -6,9 +6,11 @@
 
 namespace clvr {
 
-class LightTables {
+class DeviceLights {
 public:
-    LightTables(Device& device, const shared::RenderParams& params, const EnvironmentTables& environment);
+    DeviceLights(Device& device, const shared::RenderParams& params, const EnvironmentTables& environment);
+    /// Another camera under the same environment: writes sizeof(RenderParams) bytes, behind what is enqueued.
+    void set_view(Device& device, const shared::RenderParams& params);
     /// LIGHT_ARGS, in order.
     BufferList arguments() const { return {&render_, &texel_, &row_cdf_, &column_cdf_, &row_cos_}; }
     /// The RenderParams alone.

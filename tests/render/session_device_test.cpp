@@ -61,11 +61,11 @@ TEST(Frame, HoldsItsChannels) {
 TEST(Frame, LeavesLightOutThatNobodyWants) {
     const Voxels v = constant_volume({8, 8, 8});
     const PreparedVolume prepared(v);
-    Renderer renderer({shared_device()}, prepared, small_scene(1));
-    const Frame lit = renderer.render();
+    RenderSession session({shared_device()}, prepared, small_scene(1));
+    const Frame lit = clvr::render(session, small_scene(1));
     RenderControl control;
     control.light = false;
-    Frame unlit = renderer.render(control);
+    const Frame unlit = clvr::render(session, small_scene(1), control);
     EXPECT_EQ(unlit.channels.size(), lit.channels.size() - 6);
     for (const auto& [name, values] : lit.channels) {
         if (name.rfind("light.", 0) == 0)
@@ -86,24 +86,28 @@ TEST(Frame, MeanAndVarianceAreThoseOfTheSamples) {
     const Stage stage(constant_volume({8, 8, 8}), s);
     Device device = shared_device();
     const DeviceVolume volume = stage.upload(device);
-    const LightTables light(device, stage.render, {});
+    const DeviceLights light(device, stage.render, {});
     PathTracer tracer(device, volume, light, 64);
     const std::atomic<bool> going{false};
-    const auto trace = [&](std::uint32_t first, std::uint32_t samples) {
-        PixelSums sums{std::vector<shared::float4>(64), std::vector<shared::float4>(64)};
-        EXPECT_TRUE(tracer.trace(0, 64, first, samples, sums, 0, going));
-        return sums;
+    struct Sums {
+        std::vector<shared::float4> mean, deviation;
     };
-    const PixelSums all = trace(0, spp);
-    std::vector<PixelSums> single;
+    const auto trace = [&](std::uint32_t first, std::uint32_t samples) {
+        const PixelSums zero(device, 64);
+        PixelSums sums(device, 64);
+        EXPECT_TRUE(tracer.trace(0, 64, first, samples, zero, sums, 0, going));
+        return Sums{device.download<shared::float4>(sums.mean, 64), device.download<shared::float4>(sums.deviation, 64)};
+    };
+    const Sums all = trace(0, spp);
+    std::vector<Sums> single;
     for (std::uint32_t k = 0; k < spp; ++k) { // counted as sample k, it joins an average of k zeros with the weight 1 / (k + 1)
         single.push_back(trace(k, 1));
         for (auto& m : single.back().mean) m.x *= static_cast<float>(k + 1), m.w *= static_cast<float>(k + 1);
     }
     for (int i = 0; i < 64; ++i) {
         double mean = 0, squares = 0, alpha = 0;
-        for (const PixelSums& one : single) mean += one.mean[i].x / spp, alpha += one.mean[i].w / spp;
-        for (const PixelSums& one : single) squares += (one.mean[i].x - mean) * (one.mean[i].x - mean);
+        for (const Sums& one : single) mean += one.mean[i].x / spp, alpha += one.mean[i].w / spp;
+        for (const Sums& one : single) squares += (one.mean[i].x - mean) * (one.mean[i].x - mean);
         EXPECT_NEAR(all.mean[i].x, mean, 1e-5);
         EXPECT_NEAR(all.mean[i].w, alpha, 1e-5);
         EXPECT_NEAR(all.deviation[i].x, squares, 1e-4 * squares + 1e-6);
@@ -171,10 +175,10 @@ TEST(NothingVisible, IsATransparentPictureAndAWarning) {
         s.mode = mode;
         s.transfer = uniform_transfer({1, 1, 1}, 0);
         const PreparedVolume volume(constant_volume({20, 20, 20}));
-        Renderer renderer({shared_device()}, volume, s);
-        ASSERT_EQ(renderer.warnings().size(), 1u);
-        EXPECT_NE(renderer.warnings()[0].find("nothing is visible"), std::string::npos);
-        const Frame f = renderer.render();
+        RenderSession session({shared_device()}, volume, s);
+        ASSERT_EQ(session.warnings().size(), 1u);
+        EXPECT_NE(session.warnings()[0].find("nothing is visible"), std::string::npos);
+        const Frame f = clvr::render(session, s);
         for (const char* name : {"R", "G", "B", "A", "opacity.A"}) EXPECT_EQ(f.at(name), std::vector<float>(f.pixels(), 0.0f)) << name;
         for (const char* name : {"albedo.R", "depth.Z", "depth.half"}) EXPECT_EQ(f.at(name), std::vector<float>(f.pixels(), 1.0f)) << name;
     }
@@ -237,13 +241,13 @@ TEST(Memory, TooLittleIsAnErrorAndIsGivenBack) {
     const std::size_t before = device.used_bytes();
     const PreparedVolume volume(constant_volume({128, 128, 128}));
     device.set_memory_limit(before + (1 << 20));
-    EXPECT_EQ(kind_of([&] { Renderer({device}, volume, small_scene()); }), ErrorKind::memory);
+    EXPECT_EQ(kind_of([&] { RenderSession({device}, volume, small_scene()); }), ErrorKind::memory);
     EXPECT_EQ(device.used_bytes(), before);
     device.set_memory_limit(before + (3 << 20)); // the volume fits, the paths do not
     EXPECT_EQ(kind_of([&] {
                   Scene s = small_scene();
                   s.width = s.height = 1024;
-                  Renderer({device}, volume, s).render();
+                  clvr::render({device}, volume, s);
               }),
               ErrorKind::memory);
     EXPECT_EQ(device.used_bytes(), before);
@@ -263,14 +267,14 @@ TEST(Cancelling, BeforeTheFirstPassIsAnError) {
     for (bool features : {true, false}) {
         Scene s = small_scene();
         s.features = features;
-        Renderer renderer({shared_device()}, volume, s);
-        EXPECT_EQ(kind_of([&] { renderer.render(control); }), ErrorKind::interrupted);
+        RenderSession session({shared_device()}, volume, s);
+        EXPECT_EQ(kind_of([&] { clvr::render(session, s, control); }), ErrorKind::interrupted);
     }
 }
 
 TEST(Progress, RisesToOne) {
     const PreparedVolume volume(constant_volume({16, 16, 16}));
-    Renderer renderer({shared_device()}, volume, small_scene(7));
+    RenderSession session({shared_device()}, volume, small_scene(7));
     double last = 0;
     int samples = 0;
     RenderControl control;
@@ -279,7 +283,7 @@ TEST(Progress, RisesToOne) {
         last = p.done;
         samples = p.samples;
     };
-    renderer.render(control);
+    clvr::render(session, small_scene(7), control);
     EXPECT_EQ(last, 1);
     EXPECT_EQ(samples, 7);
 }

@@ -1,0 +1,44 @@
+// A picture with its channels on a device.
+#pragma once
+#include "host/frame/frame.hpp"
+#include "runtime/device.hpp"
+
+#include <string>
+#include <vector>
+
+namespace clvr {
+
+/// What Frame holds on the host, on a device: planes of float32, row 0 on top, width * height values each, named as a frame's channels. The
+/// picture lies over nothing: R G B are premultiplied, without background.
+class Film {
+public:
+    Film(const Device& device, int width, int height) : device_(device), width_(width), height_(height) {}
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    std::size_t pixels() const { return static_cast<std::size_t>(width_) * height_; }
+    Device& device() { return device_; }
+    bool is_on(const Device& device) const;
+
+    /// Number of the plane, -1 when there is none.
+    int find(const std::string& name) const;
+    /// Number of the first of the planes `names`, which lie next to each other in this order; makes them (what they hold is undefined)
+    /// behind the others where none is there. Throws Error{memory}; Error{internal} when they lie otherwise.
+    int require(const std::vector<std::string>& names);
+    /// [planes][height * width]
+    Buffer& planes() { return planes_; }
+    std::vector<float> download(const std::string& name);
+    void upload(const std::string& name, const std::vector<float>& values);
+
+    /// Samples per pixel of R G B; 0: nothing was traced.
+    int samples = 0;
+
+private:
+    Device device_;
+    int width_, height_;
+    std::vector<std::string> names_;
+    std::size_t room_ = 0; // planes that fit
+    Buffer planes_;
+};
+
+} // namespace clvr

@@ -1,0 +1,135 @@
+// A volume on one device or several, ready to be seen: what changes is set alone, samples are added where they stopped, and the picture
+// stays on the device until somebody wants its pixels.
+#pragma once
+#include "host/frame/film.hpp"
+#include "host/frame/frame.hpp"
+#include "host/render/environment.hpp"
+#include "host/render/marcher.hpp"
+#include "host/render/path_tracer.hpp"
+#include "host/render/scene.hpp"
+#include "host/render/sky_split.hpp"
+#include "host/volume/bricks.hpp"
+#include "runtime/dealer.hpp"
+#include "runtime/device.hpp"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+namespace clvr {
+
+/// Where a rendering stands: share of the work done (0..1), samples per pixel reached.
+struct RenderProgress {
+    double done = 0;
+    int samples = 0;
+};
+
+struct RenderControl {
+    bool light = true;                                   ///< features have light.* channels (the others' bits do not depend on it)
+    double seconds = 0;                                  ///< stop adding passes when they would end later than this; 0: no limit
+    const std::atomic<bool>* cancelled = nullptr;        ///< set by Ctrl-C: the passes finished so far are the result
+    std::function<void(const RenderProgress&)> progress; ///< called from the calling thread or a worker, now and then
+};
+
+/// The volume's part that no scene changes, computed once: majorant ranges.
+struct PreparedVolume {
+    Voxels voxels;
+    MajorantGrid grid;
+    explicit PreparedVolume(Voxels v) : voxels(std::move(v)), grid(majorant_grid(voxels)) {}
+};
+
+/// The same bits however samples are split into calls, whatever was set in between, on one device or several. A device that fails is left
+/// out with a warning, and the others do its work; the last one's failure is thrown. Not for several threads at once.
+class RenderSession {
+public:
+    explicit RenderSession(std::vector<Device> devices);
+    /// With set_scene.
+    RenderSession(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {},
+                  bool steady = false);
+    ~RenderSession();
+
+    /// The setters, in this order the first time. Later each may be called alone: it writes only its own part to the devices, and the
+    /// picture starts anew. What is given outlives the session. They throw Error.
+    void set_volume(const PreparedVolume& volume);
+    /// Uploads transfer table, majorants and those bricks that become visible.
+    void set_appearance(const Appearance& appearance);
+    /// `environment`: the tables of the light's image, empty without one.
+    void set_lights(const Light& light, const EnvironmentTables& environment = {});
+    void set_size(int width, int height);
+    /// Writes less than 4 KiB. `steady` frames for a turntable (resolve_view).
+    void set_view(const Viewpoint& view, bool steady = false);
+    /// All of them. Throws Error{usage} for a scene that validate() refuses.
+    void set_scene(const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {}, bool steady = false);
+
+    /// Drops the samples and the features.
+    void restart();
+    /// Adds so many samples to each pixel; returns how many there are: fewer than asked when cancelled or out of time, never part of a
+    /// pass.
+    int accumulate(int samples, const RenderControl& control = {});
+    /// Marches the features (with light: and direct light) of the view, `rays` (1 or 4) a pixel, unless they are there. False when
+    /// cancelled.
+    bool march_features(int rays, const RenderControl& control = {});
+    /// Marches R G B A, for Mode dvr or mip, in place of samples. False when cancelled.
+    bool march_picture(Mode mode, int rays, const RenderControl& control = {});
+
+    /// The picture on its device, with what was asked for so far; valid until the next call. Null where it is kept on the host: on several
+    /// devices, or when it takes more than half of what the device has left.
+    Film* film();
+    /// The picture on the host: one download. Over `background`, with background.R/G/B, unless that is transparent.
+    Frame frame(const Background& background = {});
+
+    /// What the last set_appearance has to say: that nothing is visible.
+    const std::vector<std::string>& warnings() const { return warnings_; }
+    /// The devices that have not failed.
+    std::vector<Device> devices() const;
+
+private:
+    struct Worker;
+    struct HostSums;
+    std::vector<Device> all_;
+    Dealer dealer_;
+    std::vector<std::unique_ptr<Worker>> workers_; // by device; null for one that failed at once
+    std::mutex progress_;
+    const PreparedVolume* volume_ = nullptr;
+    Scene scene_; // as set; of it no more than the parts that setters take
+    Classified classified_;
+    std::vector<Double3> outline_; // of what is visible, world space
+    EnvironmentTables environment_;
+    std::optional<SkySplit> sky_; // of the environment, once features were marched
+    bool steady_ = false;
+    std::vector<std::string> warnings_;
+
+    shared::RenderParams params_; // of the view
+    bool view_set_ = false;       // whether params_ are what was set, on every device
+    std::uint32_t numbers_ = 0;   // pixel numbers, in 4x4 blocks
+
+    int samples_ = 0, resolved_ = 0;       // of the picture; of those, in the planes
+    bool traced_ = false;                  // the samples are paths, not a march's rays
+    std::vector<std::string> marched_;     // channels that are there from a march
+    int rays_ = 0;                         // of the march
+    std::unique_ptr<Film> film_;           // where the picture is kept on the device,
+    std::optional<PixelSums> sums_, next_; // with the sums of whole passes, and of the pass that runs
+    std::unique_ptr<HostSums> host_;       // else where it is kept on the host
+
+    void prepare_view();
+    void prepare_light();
+    void prepare_picture();
+    void compare_devices();
+    bool trace_pass(int samples, int wanted, const RenderControl& control);
+    bool march(March kind, int rays, bool lit, const RenderControl& control);
+    std::vector<Dealer::Portion> march_portions() const;
+    void resolve();
+    void lay_background(Frame& frame, const Background& background);
+};
+
+/// The scene's picture, of which the session has set all but spp, mode, features and background: features when wanted, then samples or a
+/// march. `frame.attributes` gets "clvr.spp" (samples reached). Throws Error{interrupted} when cancelled before one pass was done.
+Frame render(RenderSession& session, const Scene& scene, const RenderControl& control = {});
+/// A session's whole life for one picture.
+Frame render(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {},
+             const RenderControl& control = {});
+
+} // namespace clvr
