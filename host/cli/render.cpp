@@ -60,15 +60,26 @@ class FrameDenoiser {
 public:
     explicit FrameDenoiser(Model model) : model_(std::move(model)) {}
     bool wants_light() const { return reads_light(model_); }
-    Frame denoise(const Frame& frame, std::vector<Device> devices) {
-        return on_first(devices, [&](Device& device) {
-            if (!denoiser_ || !is_same(*on_, device)) denoiser_.emplace(device, model_);
-            on_ = device;
-            return denoiser_->denoise(frame);
-        });
+    /// Where the session keeps the picture on a device, it is denoised there.
+    Frame denoise(RenderSession& session, const Background& background, bool beauty_alone) {
+        if (Film* const film = session.film()) {
+            denoiser_on(film->device()).denoise(*film);
+            return session.frame(background, beauty_alone);
+        }
+        const Frame noisy = session.frame();
+        std::vector<Device> devices = session.devices();
+        Frame frame = on_first(devices, [&](Device& device) { return denoiser_on(device).denoise(noisy); });
+        session.lay_background(frame, background);
+        return frame;
     }
 
 private:
+    Denoiser& denoiser_on(Device& device) {
+        if (!denoiser_ || !is_same(*on_, device)) denoiser_.emplace(device, model_);
+        on_ = device;
+        return *denoiser_;
+    }
+
     Model model_;
     std::optional<Denoiser> denoiser_; // kept from view to view
     std::optional<Device> on_;
@@ -81,7 +92,6 @@ int render_view(RenderSession& session, FrameDenoiser* denoiser, const Scene& sc
     const bool any_exr = std::any_of(outputs.begin(), outputs.end(), is_exr_path);
     Scene wanted = scene;
     wanted.features = denoiser || (scene.features && any_exr); // a PNG alone does not need them
-    Frame frame;
     {
         ProgressBar bar(label, false);
         const double paths = static_cast<double>(scene.width) * scene.height * scene.spp;
@@ -95,11 +105,11 @@ int render_view(RenderSession& session, FrameDenoiser* denoiser, const Scene& sc
             const double share = o.seconds > 0 ? std::min(1.0, bar.seconds() / o.seconds) : p.done;
             bar.update(share, fmt::format("{} spp, {:.2f} Mpaths/s", p.samples, p.done * paths / bar.seconds() * 1e-6));
         };
-        frame = clvr::render(session, wanted, control);
+        take(session, wanted, control);
     }
+    Frame frame = denoiser ? denoiser->denoise(session, scene.background, !any_exr) : session.frame(scene.background, !any_exr);
     Scene made = scene;
     made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
-    if (denoiser) frame = denoiser->denoise(frame, session.devices());
     add_provenance(frame, made, session.devices());
     pictures.write(frame, {made.tonemap, made.exposure}, outputs);
     return made.spp;

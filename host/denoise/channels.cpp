@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 
 namespace clvr {
 
@@ -57,7 +58,13 @@ int ChannelPlan::plane(const std::string& name) const {
     return at == planes_.end() ? -1 : static_cast<int>(at - planes_.begin());
 }
 
-shared::SourceParams ChannelPlan::params(double exposure) const {
+namespace {
+/// Number of the plane of a film that the network reads as `name`.
+int plane_in(const Film& film, const std::string& name) { return film.find(is_radiance(name) ? "noisy." + name : name); }
+} // namespace
+
+template <class Number>
+shared::SourceParams ChannelPlan::params_by(double exposure, const Number& plane) const {
     constexpr float ceiling = 32; // kernels/denoise/README.md, "Switches"
     shared::SourceParams p{};
     p.beauty = plane("R");
@@ -70,6 +77,20 @@ shared::SourceParams ChannelPlan::params(double exposure) const {
     p.ceiling = exposure_ ? ceiling : 0x1p126f;
     p.albedo_floor = albedo_floor_;
     return p;
+}
+
+shared::SourceParams ChannelPlan::params(double exposure) const {
+    return params_by(exposure, [this](const std::string& name) { return plane(name); });
+}
+
+shared::SourceParams ChannelPlan::params(double exposure, const Film& film) const {
+    return params_by(exposure, [&film](const std::string& name) { return plane_in(film, name); });
+}
+
+std::vector<std::array<std::int32_t, 2>> ChannelPlan::channels(const Film& film) const {
+    std::vector<std::array<std::int32_t, 2>> there = channels_;
+    for (auto& channel : there) channel[0] = plane_in(film, planes_[static_cast<std::size_t>(channel[0])]);
+    return there;
 }
 
 std::vector<std::string> ChannelPlan::missing(const Frame& frame) const {
@@ -107,9 +128,42 @@ BeautyWithoutBackground::BeautyWithoutBackground(const Frame& frame, const std::
     if (background && alpha) background_ = background->data(), alpha_ = alpha->data();
 }
 
+std::vector<std::string> ChannelPlan::made_planes() const {
+    std::vector<std::string> names;
+    std::copy_if(planes_.begin(), planes_.end(), std::back_inserter(names),
+                 [](const std::string& name) { return known_colour(name) >= 0 || name == noise_channel; });
+    return names;
+}
+
+bool ChannelPlan::reads_known_light() const {
+    return std::any_of(planes_.begin(), planes_.end(), [](const std::string& name) { return known_colour(name) >= 0; });
+}
+
 std::optional<KnownLight> ChannelPlan::known_light(const Frame& frame) const {
-    if (std::none_of(planes_.begin(), planes_.end(), [](const std::string& name) { return known_colour(name) >= 0; })) return std::nullopt;
+    if (!reads_known_light()) return std::nullopt;
     return KnownLight(frame, known_cell_);
+}
+
+std::size_t ChannelPlan::gather_plane(const std::string& name, const Frame& frame, const Region& region,
+                                      const std::optional<KnownLight>& known, std::vector<float>& plane) const {
+    std::size_t repaired = 0;
+    const auto add = [&](const auto& value_of) {
+        for (int y = region.y; y < region.y + region.height; ++y)
+            for (int x = region.x; x < region.x + region.width; ++x) {
+                float v = value_of(static_cast<std::size_t>(y) * frame.width + x);
+                if (!std::isfinite(v)) v = 0, ++repaired;
+                plane.push_back(v);
+            }
+    };
+    if (const int c = known_colour(name); c >= 0)
+        add([&known, c](std::size_t i) { return (*known)(c, i); });
+    else if (name == noise_channel)
+        add([noise = noise_level(frame)](std::size_t) { return noise; });
+    else if (is_radiance(name))
+        add(BeautyWithoutBackground(frame, name));
+    else
+        add([values = frame.at(name).data()](std::size_t i) { return values[i]; });
+    return repaired;
 }
 
 std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const Region& region, const std::optional<KnownLight>& known,
@@ -118,24 +172,7 @@ std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const R
     planes.reserve(planes.size() + planes_.size() * region.pixels());
     for (const auto& name : planes_) {
         const bool of_target = name.rfind("target.", 0) == 0;
-        const Frame& from = of_target ? *target : frame;
-        const std::string colour = of_target ? name.substr(7) : name;
-        const auto add = [&](const auto& value_of) {
-            for (int y = region.y; y < region.y + region.height; ++y)
-                for (int x = region.x; x < region.x + region.width; ++x) {
-                    float v = value_of(static_cast<std::size_t>(y) * frame.width + x);
-                    if (!std::isfinite(v)) v = 0, ++repaired;
-                    planes.push_back(v);
-                }
-        };
-        if (const int c = known_colour(name); c >= 0)
-            add([&known, c](std::size_t i) { return (*known)(c, i); });
-        else if (name == noise_channel)
-            add([noise = noise_level(frame)](std::size_t) { return noise; });
-        else if (is_radiance(colour))
-            add(BeautyWithoutBackground(from, colour));
-        else
-            add([values = from.at(colour).data()](std::size_t i) { return values[i]; });
+        repaired += gather_plane(of_target ? name.substr(7) : name, of_target ? *target : frame, region, known, planes);
     }
     return repaired;
 }

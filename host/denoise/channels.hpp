@@ -2,6 +2,7 @@
 #pragma once
 #include "host/denoise/known_light.hpp"
 #include "host/denoise/model.hpp"
+#include "host/frame/film.hpp"
 #include "host/frame/frame.hpp"
 #include "kernels/shared/denoise_params.h"
 
@@ -25,6 +26,13 @@ public:
     /// The model's switches and plane numbers; `exposure` from exposure_of.
     shared::SourceParams params(double exposure) const;
 
+    /// Those of planes() that no frame has: known.R/G/B and noise.
+    std::vector<std::string> made_planes() const;
+    bool reads_known_light() const;
+    /// Both for the planes of a film that has all of planes(): as numbers there, the noisy beauty's in place of R G B.
+    std::vector<std::array<std::int32_t, 2>> channels(const Film& film) const;
+    shared::SourceParams params(double exposure, const Film& film) const;
+
     /// Channels that the model reads and the frame lacks; "noise" where it does not say its samples per pixel.
     std::vector<std::string> missing(const Frame& frame) const;
     /// Throws Error{input} naming them, and what the frame has.
@@ -36,6 +44,10 @@ public:
     std::size_t gather(const Frame& frame, const Frame* target, const Region& region, const std::optional<KnownLight>& known,
                        std::vector<float>& planes) const;
 
+    /// One of planes() alone, not of the target.
+    std::size_t gather_plane(const std::string& name, const Frame& frame, const Region& region, const std::optional<KnownLight>& known,
+                             std::vector<float>& plane) const;
+
 private:
     std::vector<std::string> planes_;
     std::vector<std::array<std::int32_t, 2>> channels_;
@@ -44,6 +56,8 @@ private:
     float albedo_floor_;
 
     int plane(const std::string& name) const; // its number; -1 where there is no such plane
+    template <class Number>
+    shared::SourceParams params_by(double exposure, const Number& plane) const;
 };
 
 /// Whether a model reads the light.* channels of a frame.

@@ -1,10 +1,12 @@
 #include "host/denoise/denoiser.hpp"
 #include "host/denoise/neural_grid.hpp"
+#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <functional>
 #include <numeric>
 
 namespace clvr {
@@ -38,6 +40,25 @@ struct Tiling {
     }
 };
 
+/// A part of a picture on a device, with what it takes to denoise its inner part.
+struct Window {
+    Film film;
+    Region region, inner; // of the picture; inner lies in region
+};
+
+/// `r` and as many pixels around it as the picture has.
+Region grown(const Region& r, int by, int width, int height) {
+    const int x = std::max(0, r.x - by), y = std::max(0, r.y - by);
+    return {x, y, std::min(width, r.x + r.width + by) - x, std::min(height, r.y + r.height + by) - y};
+}
+
+const std::vector<std::string> beauty{"R", "G", "B", "A"}, noisy_beauty{"noisy.R", "noisy.G", "noisy.B", "noisy.A"},
+    variances{"variance.R", "variance.G", "variance.B"};
+
+bool has_variances(const Frame& frame) {
+    return std::all_of(variances.begin(), variances.end(), [&](const std::string& v) { return frame.has(v); });
+}
+
 } // namespace
 
 struct Denoiser::State {
@@ -48,31 +69,50 @@ struct Denoiser::State {
     Buffer parameters;
     std::unique_ptr<NeuralGrid> grid; // of the last tile's size, kept for the next frame
     BatchShape shape;
+    Kernel finish, give_back, blend_sums, blend;
     std::size_t repaired = 0;
 
-    State(const Device& d, const Model& m) : device(d), model(m), plan(m, false), tiling(m) {}
-
-    std::size_t tile_bytes(const Region& outer, bool show) const {
-        return NeuralGrid::bytes(device, model, {outer.width, outer.height, 1, show}) + plan.planes().size() * outer.pixels() * 4;
+    State(const Device& d, const Model& m)
+        : device(d), model(m), plan(m, false), tiling(m), finish(device.kernel("denoise/finish")),
+          give_back(device.kernel("denoise/give_back")), blend_sums(device.kernel("denoise/blend_sums")),
+          blend(device.kernel("denoise/blend_by_variance")) {
+        parameters = device.upload(m.flat(), "model");
     }
 
-    /// Rows and columns of a tile's inner part: the whole picture where it fits in the budget, else whole rows, then parts of rows.
-    Region tile(int width, int height, bool show) const {
-        // 1080p stays below 400 MB in two tiles, which costs 7 % more pixels; larger tiles are not faster.
-        const std::size_t mib = 1 << 20, tunable = static_cast<std::size_t>(device.tunable("denoise_mib", 380)) * mib;
-        const std::size_t kept = grid ? tile_bytes({0, 0, shape.width, shape.height}, shape.show) : 0;
-        const std::size_t budget = std::min(tunable, (device.free_bytes() + kept) / 8 * 7);
+    /// Bytes that a tile may take beside a picture of `held` bytes: 1080p stays below 400 MB in all.
+    std::size_t tile_budget(std::size_t held) const {
+        const std::size_t kept = grid ? tile_bytes({0, 0, shape.width, shape.height}, shape.show) : 0,
+                          most = static_cast<std::size_t>(device.tunable("denoise_mib", 380)) << 20;
+        return std::min(std::max(most > held ? most - held : 0, most / 2), (device.free_bytes() + kept) / 8 * 7);
+    }
+
+    /// Bytes that the part of a picture on the device may take.
+    std::size_t window_budget() const {
+        const std::size_t half = static_cast<std::size_t>(device.tunable("denoise_mib", 380)) << 19, least = std::size_t{64} << 20;
+        return std::min(std::max(half, least), device.free_bytes() / 16 * 7);
+    }
+
+    std::size_t tile_bytes(const Region& outer, bool show) const {
+        return NeuralGrid::bytes(device, model, {outer.width, outer.height, 1, show});
+    }
+
+    /// Halves the picture's rows, then its columns, to parts of at least `align` pixels, until one that gives so much fits.
+    template <class Fits>
+    Region part_of(int width, int height, const Fits& fits) const {
         Region t{0, 0, width, height};
-        const auto fits = [&] {
+        for (int parts = 2; !fits(t) && t.height > tiling.align; ++parts) t.height = (height + parts - 1) / parts;
+        for (int parts = 2; !fits(t) && t.width > tiling.align; ++parts) t.width = (width + parts - 1) / parts;
+        return t;
+    }
+
+    /// Size of the parts of `wanted` that a tile gives, within `bytes`; the picture is width x height.
+    Region tile(const Region& wanted, int width, int height, bool show, std::size_t bytes) const {
+        return part_of(wanted.width, wanted.height, [&](const Region& t) {
             const Region outer{0, 0, std::min(width, t.width + 2 * tiling.halo + tiling.align),
                                std::min(height, t.height + 2 * tiling.halo + tiling.align)};
-            return tile_bytes(outer, show) <= budget &&
-                   std::size_t{16} * NeuralGrid::params_of(device, model, outer.width, outer.height).cells <= device.max_alloc_bytes() &&
-                   plan.planes().size() * outer.pixels() * 4 <= device.max_alloc_bytes();
-        };
-        for (int parts = 2; !fits() && t.height > tiling.align; ++parts) t.height = (height + parts - 1) / parts;
-        for (int parts = 2; !fits() && t.width > tiling.align; ++parts) t.width = (width + parts - 1) / parts;
-        return t;
+            return tile_bytes(outer, show) <= bytes &&
+                   std::size_t{16} * NeuralGrid::params_of(device, model, outer.width, outer.height).cells <= device.max_alloc_bytes();
+        });
     }
 
     /// A NeuralGrid of the size; the last one's memory is given back first.
@@ -86,105 +126,165 @@ struct Denoiser::State {
         return *grid;
     }
 
-    /// Denoises a tile: copies what lies in `inner` to the frame's channels named so, one per plane of NeuralGrid::result and then of
-    /// outputs().
-    void denoise_tile(const Frame& frame, const std::optional<KnownLight>& known, const Region& inner, const shared::SourceParams& params,
-                      bool show, const std::vector<std::vector<float>*>& results, const std::vector<std::vector<float>*>& outputs) {
-        const Region outer = tiling.outer(inner, frame.width, frame.height);
-        std::vector<float> planes;
-        repaired += plan.gather(frame, nullptr, outer, known, planes);
-        NeuralGrid& g = grid_of({outer.width, outer.height, 1, show});
-        const Buffer source = device.upload(planes, "frame channels");
-        g.assemble(source, outer.width, outer.height, params, 0, 0, 0, 0);
-        g.forward(1);
-        const auto copy = [&](const Buffer& from, int channels, int channel, std::vector<float>& to) {
-            const std::vector<float> plane = g.download(from, channels, 0, channel);
-            for (int y = 0; y < inner.height; ++y) {
-                const auto row = plane.begin() + static_cast<std::ptrdiff_t>(inner.y + y - outer.y) * outer.width + inner.x - outer.x;
-                std::copy(row, row + inner.width, to.begin() + static_cast<std::ptrdiff_t>(inner.y + y) * frame.width + inner.x);
+    using OnTile = std::function<void(NeuralGrid& grid, const Region& inner, const Region& outer)>;
+
+    /// Denoises the window's inner part of a picture of this size, whose exposure is known: R G B A of the film, where the noisy beauty
+    /// lies, become the result, the noisy ones stay in noisy.R G B A. `on_tile` sees each tile of the network (its parts of the picture).
+    /// `alpha`: whether A holds one. `held`: bytes of the device that count for tile_budget.
+    void run(Window& window, int width, int height, double exposure, bool alpha, std::size_t held, bool show, const OnTile& on_tile) {
+        Film& film = window.film;
+        const std::size_t plane_bytes = film.pixels() * sizeof(float);
+        const bool with_variance = film.samples != 1 && film.find("variance.R") >= 0, with_opacity = alpha && film.find("opacity.A") >= 0;
+        const int noisy = film.require(noisy_beauty), out = film.require(beauty);
+        copy(device, film.planes(), film.planes(), 4 * plane_bytes, out * plane_bytes, noisy * plane_bytes);
+        // Alpha of the paths is as noisy as their colour.
+        if (with_opacity)
+            copy(device, film.planes(), film.planes(), plane_bytes, film.find("opacity.A") * plane_bytes, (out + 3) * plane_bytes);
+
+        const shared::SourceParams params = plan.params(exposure, film);
+        const Buffer channels = device.upload(plan.channels(film), "channel list");
+        const auto size = static_cast<cl_uint>(film.pixels());
+        // Blending sums over pixels beside the inner part.
+        const Region wanted = with_variance ? grown(window.inner, CLVR_BLEND_RADIUS, width, height) : window.inner;
+        const Region tile_size = tile(wanted, width, height, show, tile_budget(held));
+        for (int y = wanted.y; y < wanted.y + wanted.height; y += tile_size.height)
+            for (int x = wanted.x; x < wanted.x + wanted.width; x += tile_size.width) {
+                const Region inner{x, y, std::min(tile_size.width, wanted.x + wanted.width - x),
+                                   std::min(tile_size.height, wanted.y + wanted.height - y)},
+                    outer = tiling.outer(inner, width, height);
+                NeuralGrid& g = grid_of({outer.width, outer.height, 1, show});
+                g.assemble(film.planes(), film.width(), film.height(), params, outer.x - window.region.x, outer.y - window.region.y, 0, 0,
+                           &channels);
+                g.forward(1);
+                const shared::int4 from{inner.x - outer.x, inner.y - outer.y, inner.width, inner.height};
+                const auto to = static_cast<cl_uint>((inner.y - window.region.y) * film.width() + inner.x - window.region.x);
+                device.launch(finish, {static_cast<std::size_t>(inner.width), static_cast<std::size_t>(inner.height)}, finish.group(64), {},
+                              g.params(), g.result(), 3 + (show ? 3 * static_cast<int>(model.levels.size()) : 0), from, params.exposure,
+                              film.planes(), static_cast<cl_uint>(out), size, film.width(), to);
+                if (on_tile) on_tile(g, inner, outer);
             }
+        if (with_variance) go_back(film, out, noisy, with_opacity);
+        device.finish(); // before `channels` goes
+    }
+
+    /// Takes the result back towards the noisy input where that has converged.
+    void go_back(Film& film, int out, int noisy, bool with_opacity) {
+        const auto size = static_cast<cl_uint>(film.pixels()), to = static_cast<cl_uint>(out), from = static_cast<cl_uint>(noisy),
+                   variance = static_cast<cl_uint>(film.find("variance.R"));
+        if (with_opacity)
+            device.launch(give_back, {film.pixels()}, give_back.group(64), {}, film.planes(), size, to, from, variance,
+                          static_cast<cl_uint>(film.find("opacity.A")));
+        const Buffer sums = device.buffer(film.pixels() * 16, "sums of pixels to blend");
+        const Range pixels{static_cast<std::size_t>(film.width()), static_cast<std::size_t>(film.height())};
+        for (cl_uint c = 0; c < 3; ++c) {
+            device.launch(blend_sums, pixels, blend_sums.group(64), {}, film.planes(), size, from + c, variance + c, to + c, film.width(),
+                          film.height(), sums);
+            device.launch(blend, pixels, blend.group(64), {}, film.planes(), size, from + c, to + c, sums, film.width(), film.height());
+        }
+        device.finish(); // before `sums` goes
+    }
+
+    /// Size of the parts in which a picture on the host goes through: all of it where the budget holds its planes.
+    Region window_size(const Frame& frame) const {
+        const std::size_t planes = (plan.planes().size() + 8 + 3 + 7) / 8 * 8;
+        const std::size_t bytes = planes * 4 + (has_variances(frame) ? 16 : 0), most = window_budget();
+        return part_of(frame.width, frame.height, [&](const Region& t) {
+            const int more = 2 * (tiling.halo + CLVR_BLEND_RADIUS) + tiling.align;
+            const std::size_t pixels =
+                static_cast<std::size_t>(std::min(frame.width, t.width + more)) * std::min(frame.height, t.height + more);
+            return pixels * bytes <= most && pixels * planes * 4 <= device.max_alloc_bytes();
+        });
+    }
+
+    /// What it takes of a frame to denoise `inner`.
+    Window upload(const Frame& frame, const Region& inner, const std::optional<KnownLight>& known) {
+        const Region wanted = grown(inner, CLVR_BLEND_RADIUS, frame.width, frame.height),
+                     region = tiling.outer(wanted, frame.width, frame.height);
+        Window window{{device, region.width, region.height}, region, inner};
+        Film& film = window.film;
+        std::vector<float> planes;
+        repaired += plan.gather(frame, nullptr, region, known, planes);
+        std::vector<std::string> names = beauty, further = plan.planes();
+        names.insert(names.end(), noisy_beauty.begin(), noisy_beauty.end());
+        if (has_variances(frame)) names.insert(names.end(), variances.begin(), variances.end());
+        further.erase(further.begin(), further.begin() + 3); // R G B lie in beauty
+        names.insert(names.end(), further.begin(), further.end());
+        if (frame.has("opacity.A") && frame.has("A") && std::find(names.begin(), names.end(), "opacity.A") == names.end())
+            names.push_back("opacity.A");
+        film.require(names);
+        const auto put = [&](const std::string& name, const float* values) {
+            device.write(film.planes(), values, region.pixels() * 4, static_cast<std::size_t>(film.find(name)) * region.pixels() * 4);
         };
-        for (std::size_t c = 0; c < results.size(); ++c)
-            copy(g.result(), static_cast<int>(results.size()), static_cast<int>(c), *results[c]);
-        for (std::size_t c = 0; c < outputs.size(); ++c)
-            if (outputs[c]) copy(g.outputs(), static_cast<int>(outputs.size()), static_cast<int>(c), *outputs[c]);
+        for (std::size_t k = 0; k < plan.planes().size(); ++k) put(plan.planes()[k], &planes[k * region.pixels()]);
+        for (const std::string& name : names) {
+            const std::vector<float>* const values = frame.find(name);
+            const bool gathered = std::find(plan.planes().begin(), plan.planes().end(), name) != plan.planes().end();
+            if (!values || gathered) continue;
+            std::vector<float> part;
+            for (int y = region.y; y < region.y + region.height; ++y)
+                for (int x = region.x; x < region.x + region.width; ++x) {
+                    const float v = (*values)[static_cast<std::size_t>(y) * frame.width + x];
+                    part.push_back(std::isfinite(v) ? v : 0);
+                }
+            put(name, part.data());
+        }
+        return window;
     }
 };
 
-namespace {
-
-/// Takes the result back towards the noisy input where that has converged (kernels/denoise/blend_by_variance.cl), in bands of rows.
-void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
-    constexpr int band = 256;
-    Kernel sum = device.kernel("denoise/blend_sums"), blend = device.kernel("denoise/blend_by_variance");
-    const auto width = static_cast<std::size_t>(noisy.width);
-    for (const char* c : colours) {
-        std::vector<float>& to = done.channel(c);
-        const std::vector<float> from = to;
-        for (int y = 0; y < noisy.height; y += band) {
-            const int low = std::max(0, y - CLVR_BLEND_RADIUS), count = std::min(band, noisy.height - y),
-                      rows = std::min(noisy.height, y + count + CLVR_BLEND_RADIUS) - low;
-            const auto upload = [&](const auto& value_of) {
-                std::vector<float> values(rows * width);
-                for (std::size_t i = 0; i < values.size(); ++i) {
-                    const float v = value_of(low * width + i);
-                    values[i] = std::isfinite(v) ? v : 0;
-                }
-                return device.upload(values, "rows to blend");
-            };
-            const std::vector<float>& variances = noisy.at(std::string("variance.") + c);
-            const Buffer before = upload(BeautyWithoutBackground(noisy, c)), variance = upload([&](std::size_t i) { return variances[i]; }),
-                         after = upload([&](std::size_t i) { return from[i]; }),
-                         sums = device.buffer(rows * width * 16, "sums of rows to blend"),
-                         result = device.buffer(count * width * 4, "blended rows");
-            device.launch(sum, {width, static_cast<std::size_t>(rows)}, sum.group(64), {}, before, variance, after, noisy.width, rows,
-                          sums);
-            device.launch(blend, {width, static_cast<std::size_t>(count)}, blend.group(64), {}, before, after, sums, noisy.width, rows,
-                          y - low, count, result);
-            const std::vector<float> blended = device.download<float>(result, count * width);
-            std::copy(blended.begin(), blended.end(), to.begin() + static_cast<std::ptrdiff_t>(y) * noisy.width);
-        }
-    }
-}
-
-/// Gives light back to pixels whose feature rays missed what the paths met: structures thinner than a pixel, where opacity.A is nearly 0
-/// and so is the result. With d the difference to the input and v the input's variance, the share 1 - 4 v / d^2 of d comes back (the
-/// positive-part James-Stein form, at two standard errors): nothing at few samples, all where the input has converged. The more the feature
-/// rays saw, the less comes back: nothing once one ray of four saw something. A and the colours take the same share.
-void give_back_missed_light(const Frame& noisy, Frame& done) {
-    const std::vector<float>*opacity = noisy.find("opacity.A"), *alpha = noisy.find("A");
-    if (!opacity || !alpha) return;
-    const BeautyWithoutBackground beauty[] = {{noisy, "R"}, {noisy, "G"}, {noisy, "B"}};
-    const std::vector<float>* const variance[] = {noisy.find("variance.R"), noisy.find("variance.G"), noisy.find("variance.B")};
-    std::vector<float>* const to[] = {&done.channel("R"), &done.channel("G"), &done.channel("B")};
-    for (std::size_t i = 0; i < noisy.pixels(); ++i) {
-        const double missed = 1 - 4.0 * (*opacity)[i];
-        if (!(missed > 0 && (*alpha)[i] > 0)) continue;
-        double apart = 0, noise = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double d = static_cast<double>(beauty[c](i)) - (*to[c])[i];
-            apart += d * d, noise += (*variance[c])[i];
-        }
-        const double share = apart > 0 ? missed * (1 - 4 * noise / apart) : 0;
-        if (!(share > 0)) continue; // includes what is not finite
-        for (std::size_t c = 0; c < 3; ++c) {
-            float& v = (*to[c])[i];
-            v = static_cast<float>(v + share * (static_cast<double>(beauty[c](i)) - v));
-        }
-        float& a = done.channels.at("A")[i];
-        a = static_cast<float>(a + share * (static_cast<double>((*alpha)[i]) - a));
-    }
-}
-
-} // namespace
-
-Denoiser::Denoiser(const Device& device, const Model& model) : state_(std::make_unique<State>(device, model)) {
+Denoiser::Denoiser(const Device& device, const Model& model) {
     validate(model);
-    state_->parameters = state_->device.upload(model.flat(), "model");
+    state_ = std::make_unique<State>(device, model);
 }
 Denoiser::~Denoiser() = default;
 
 std::size_t Denoiser::repaired() const { return state_->repaired; }
+
+namespace {
+
+/// What of a film the host reads to know exposure and light; channels that only need to be there are empty.
+Frame statistics_of(Film& film, const ChannelPlan& plan) {
+    Frame frame;
+    frame.width = film.width(), frame.height = film.height();
+    frame.attributes["clvr.spp"] = std::to_string(film.samples);
+    for (const std::string& name : plan.planes())
+        if (film.find(name) >= 0) frame.channels[name] = {};
+    std::vector<std::string> read{"R", "G", "B", "opacity.A"};
+    if (plan.reads_known_light()) read.insert(read.end(), known_light_channels().begin(), known_light_channels().end());
+    for (const std::string& name : read)
+        if (film.find(name) >= 0) frame.channels[name] = film.download(name);
+    return frame;
+}
+
+} // namespace
+
+void Denoiser::denoise(Film& film) {
+    State& s = *state_;
+    if (!film.is_on(s.device)) throw Error(ErrorKind::internal, "the picture lies on another device", "Denoiser");
+    const Frame frame = statistics_of(film, s.plan);
+    s.plan.check(frame);
+    s.repaired = 0;
+    const double exposure = s.model.exposure ? exposure_of(frame) : 1;
+    // What the plan makes on the host: known light and the noise level.
+    const Region whole{0, 0, film.width(), film.height()};
+    const std::vector<std::string> made = s.plan.made_planes();
+    if (!made.empty()) film.require(made);
+    const std::optional<KnownLight> known = s.plan.known_light(frame);
+    for (const std::string& name : made) {
+        std::vector<float> plane;
+        s.plan.gather_plane(name, frame, whole, known, plane);
+        film.upload(name, plane);
+    }
+    Window window{std::move(film), whole, whole};
+    try {
+        s.run(window, whole.width, whole.height, exposure, true, 0, false, {});
+    } catch (...) {
+        film = std::move(window.film);
+        throw;
+    }
+    film = std::move(window.film);
+    film.denoised = true;
+}
 
 Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     State& s = *state_;
@@ -193,31 +293,48 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     Frame done = frame;
     const int levels = static_cast<int>(s.model.levels.size());
     for (const char* c : colours) done.channels[std::string("noisy.") + c] = frame.at(c);
-    std::vector<std::vector<float>*> results, outputs;
-    for (const char* c : colours) results.push_back(&done.channel(c));
+    const bool alpha = frame.has("opacity.A") && frame.has("A");
+    if (alpha) done.channels["noisy.A"] = frame.at("A");
+    std::vector<std::vector<float>*> shown, outputs; // one per plane of NeuralGrid::result() after the third, of outputs()
     for (int l = 1; view.levels && l <= levels; ++l)
-        for (const char* c : colours) results.push_back(&done.channel(fmt::format("level{}.{}", l, c)));
+        for (const char* c : colours) shown.push_back(&done.channel(fmt::format("level{}.{}", l, c)));
     for (int l = 1; l <= levels; ++l) outputs.push_back(view.guides ? &done.channel(fmt::format("guide.{}", l)) : nullptr);
     for (int l = 1; l < levels; ++l) outputs.push_back(view.weights ? &done.channel(fmt::format("weight.{}", l)) : nullptr);
 
-    const shared::SourceParams params = s.plan.params(s.model.exposure ? exposure_of(frame) : 1);
+    const double exposure = s.model.exposure ? exposure_of(frame) : 1;
+    const auto on_tile = [&](NeuralGrid& g, const Region& inner, const Region& outer) {
+        const auto put = [&](const Buffer& from, std::size_t channels, std::size_t channel, std::vector<float>& to, float divisor) {
+            const std::vector<float> plane = g.download(from, static_cast<int>(channels), 0, static_cast<int>(channel));
+            for (int y = 0; y < inner.height; ++y)
+                for (int x = 0; x < inner.width; ++x)
+                    to[static_cast<std::size_t>(inner.y + y) * frame.width + inner.x + x] = std::max(
+                        plane[static_cast<std::size_t>(inner.y + y - outer.y) * outer.width + inner.x + x - outer.x] / divisor, 0.0f);
+        };
+        for (std::size_t c = 0; c < shown.size(); ++c)
+            put(g.result(), 3 + shown.size(), 3 + c, *shown[c], s.plan.params(exposure).exposure);
+        for (std::size_t c = 0; c < outputs.size(); ++c)
+            if (outputs[c]) put(g.outputs(), outputs.size(), c, *outputs[c], 1);
+    };
     const std::optional<KnownLight> known = s.plan.known_light(frame);
-    const Region tile = s.tile(frame.width, frame.height, view.levels);
-    for (int y = 0; y < frame.height; y += tile.height)
-        for (int x = 0; x < frame.width; x += tile.width)
-            s.denoise_tile(frame, known, {x, y, std::min(tile.width, frame.width - x), std::min(tile.height, frame.height - y)}, params,
-                           view.levels, results, outputs);
+    const Region part = s.window_size(frame);
+    for (int y = 0; y < frame.height; y += part.height)
+        for (int x = 0; x < frame.width; x += part.width) {
+            const Region inner{x, y, std::min(part.width, frame.width - x), std::min(part.height, frame.height - y)};
+            if (inner.pixels() != frame.pixels()) s.grid.reset(); // it may have taken the room of this part
+            Window window = s.upload(frame, inner, known);
+            s.run(window, frame.width, frame.height, exposure, alpha, window.film.planes().bytes(), view.levels, on_tile);
+            for (const std::string& name : beauty) {
+                if (name == "A" && !alpha) continue;
+                const std::vector<float> plane = window.film.download(name);
+                std::vector<float>& to = done.channel(name);
+                for (int row = y; row < y + inner.height; ++row) {
+                    const auto from =
+                        plane.begin() + static_cast<std::ptrdiff_t>(row - window.region.y) * window.region.width + x - window.region.x;
+                    std::copy(from, from + inner.width, to.begin() + static_cast<std::ptrdiff_t>(row) * frame.width + x);
+                }
+            }
+        }
 
-    if (frame.has("opacity.A") && frame.has("A")) { // the path's alpha is as noisy as its colour
-        done.channels["noisy.A"] = frame.at("A");
-        done.channels["A"] = frame.at("opacity.A");
-    }
-    for (std::vector<float>* result : results)
-        for (float& v : *result) v = std::max(v / params.exposure, 0.0f);
-    if (frame.has("variance.R") && frame.has("variance.G") && frame.has("variance.B")) {
-        give_back_missed_light(frame, done);
-        blend_by_variance(s.device, frame, done);
-    }
     const std::vector<float>* const opacity = done.has("A") ? done.find("A") : frame.opacity();
     for (const char* c : colours) {
         const std::vector<float>* const background = frame.find(std::string("background.") + c);

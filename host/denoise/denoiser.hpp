@@ -1,6 +1,7 @@
 // Frames through the neural bilateral grid.
 #pragma once
 #include "host/denoise/model.hpp"
+#include "host/frame/film.hpp"
 #include "host/frame/frame.hpp"
 #include "runtime/device.hpp"
 
@@ -28,6 +29,10 @@ public:
     /// picture of any size: what the device does not hold at once goes through in overlapping tiles, with the same bits. Throws
     /// Error{input} naming a channel that the model reads and the frame lacks (and what it has); Error{memory}.
     Frame denoise(const Frame& frame, const DenoiserView& show = {});
+
+    /// A film on this device, in place: R G B A become the result, the input stays in noisy.R G B A. The same bits as for the frame that
+    /// the film holds; other channels stay. The film holds no value that is not finite and lies over nothing.
+    void denoise(Film& film);
 
     /// Values of the last frame that were not finite.
     std::size_t repaired() const;

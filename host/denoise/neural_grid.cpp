@@ -176,7 +176,7 @@ void NeuralGrid::set_parameters(const Buffer& parameters) {
 }
 
 void NeuralGrid::assemble(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
-                          int orientation, int n) {
+                          int orientation, int n, const Buffer* channels) {
     // The part's pixel (column, row) is the result of quarter turns of (x, y) within width x height, rows upside down first for 4..7
     // (kernels/denoise/README.md, "Training"): an affine map, found from three of its pixels.
     const auto source_pixel = [&](int column, int row) {
@@ -195,7 +195,7 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
     // Turned images are read down their columns: 16 rows at once find what they share in the first-level cache (10 % on PoCL).
     device_.launch(assemble_, pixel_items(1), is_cpu(device_) ? Range{1, 16} : pixel_group(),
                    {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, params, source, size,
-                   from, channel_list_, input_, splatted_, remodulation_, target_, known_);
+                   from, channels ? *channels : channel_list_, input_, splatted_, remodulation_, target_, known_);
 }
 
 void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {

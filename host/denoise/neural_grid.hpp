@@ -56,9 +56,9 @@ public:
     /// Takes the parameters (order of Model::flat).
     void set_parameters(const Buffer& parameters);
     /// Image n of the batch becomes the part of `source` (planes of a ChannelPlan, `source_width` x `source_height` each) at (x, y), in one
-    /// of the 8 orientations.
+    /// of the 8 orientations. `channels`: ChannelPlan::channels for other planes than the plan's.
     void assemble(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
-                  int orientation, int n);
+                  int orientation, int n, const Buffer* channels = nullptr);
     /// From the assembled images to result().
     void forward(int images);
 

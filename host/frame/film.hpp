@@ -30,8 +30,9 @@ public:
     std::vector<float> download(const std::string& name);
     void upload(const std::string& name, const std::vector<float>& values);
 
-    /// Samples per pixel of R G B; 0: nothing was traced.
+    /// Samples per pixel of R G B; 0: unknown. Of one sample the planes variance.R/G/B hold nothing.
     int samples = 0;
+    bool denoised = false; ///< R G B A went through a filter; the input is noisy.R G B A
 
 private:
     Device device_;

@@ -138,22 +138,24 @@ void RenderSession::set_appearance(const Appearance& appearance) {
                             "for the range of the values");
     outline_ = outline_of(classified_, scene_);
     for (const std::size_t k : dealer_.left()) workers_[k]->sky.reset();
+    std::vector<std::size_t> done; // of the devices, in this call
     dealer_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
         const auto params = [&](const BrickLayout& layout) {
             return volume_params(scene_, volume_->voxels, volume_->grid, classified_.table, layout);
         };
-        for (const std::size_t other : dealer_.left())
-            if (other < k && all_[other].context()() == w.device.context()()) {
-                if (w.volume != workers_[other]->volume) w.tracer.reset();
-                w.volume = workers_[other]->volume;
-                return;
-            }
-        if (w.volume && w.volume->set_appearance(w.device, classified_, params(w.volume->layout()))) return;
-        w.tracer.reset();
-        w.volume.reset();
-        const BrickLayout layout = device_layout(w.device, classified_);
-        w.volume = std::make_shared<DeviceVolume>(w.device, classified_, layout, params(layout));
+        const auto same =
+            std::find_if(done.begin(), done.end(), [&](std::size_t other) { return all_[other].context()() == w.device.context()(); });
+        if (same != done.end()) {
+            if (w.volume != workers_[*same]->volume) w.tracer.reset();
+            w.volume = workers_[*same]->volume;
+        } else if (!w.volume || !w.volume->set_appearance(w.device, classified_, params(w.volume->layout()))) {
+            w.tracer.reset();
+            w.volume.reset();
+            const BrickLayout layout = device_layout(w.device, classified_);
+            w.volume = std::make_shared<DeviceVolume>(w.device, classified_, layout, params(layout));
+        }
+        done.push_back(k);
     });
 }
 
@@ -194,6 +196,7 @@ void RenderSession::set_scene(const PreparedVolume& volume, const Scene& scene, 
 
 void RenderSession::restart() {
     samples_ = resolved_ = rays_ = 0;
+    if (film_) film_->denoised = false;
     traced_ = false;
     marched_.clear();
 }
@@ -429,28 +432,34 @@ void RenderSession::resolve() {
         });
     }
     resolved_ = samples_;
+    if (film_) film_->denoised = false;
 }
 
 Film* RenderSession::film() {
     if (!film_) return nullptr;
+    if (film_->denoised) resolved_ = 0; // the samples' mean again
     resolve();
     film_->samples = samples_;
     return film_.get();
 }
 
-Frame RenderSession::frame(const Background& background) {
+Frame RenderSession::frame(const Background& background, bool beauty_alone) {
     resolve();
     Frame frame;
     frame.width = scene_.width, frame.height = scene_.height;
-    std::vector<std::string> names = marched_;
-    if (samples_ > 0) names.insert(names.end(), beauty_channels.begin(), beauty_channels.begin() + (traced_ && samples_ > 1 ? 7 : 4));
+    std::vector<std::string> names;
+    if (!beauty_alone) names = marched_;
+    const bool denoised = film_ && film_->denoised;
+    if (samples_ > 0)
+        names.insert(names.end(), beauty_channels.begin(), beauty_channels.begin() + (traced_ && samples_ > 1 && !beauty_alone ? 7 : 4));
+    if (denoised && !beauty_alone) names.insert(names.end(), {"noisy.R", "noisy.G", "noisy.B", "noisy.A"});
+    if (denoised) frame.attributes["clvr.denoised"] = "1";
     for (const std::string& name : names) frame.channels[name] = film_ ? film_->download(name) : host_->channels.at(name);
     if (samples_ > 0) frame.attributes["clvr.spp"] = std::to_string(samples_);
     if (samples_ > 0) lay_background(frame, background);
     return frame;
 }
 
-/// Composites the picture over the background: C + (1 - A) B; A stays, and B in the channels background.R/G/B.
 void RenderSession::lay_background(Frame& frame, const Background& background) {
     if (background.kind == Background::Kind::transparent) return;
     std::vector<shared::float4> under(numbers_);
@@ -467,20 +476,22 @@ void RenderSession::lay_background(Frame& frame, const Background& background) {
             w.device.read(out, &under[first], count * sizeof(shared::float4));
         });
     }
-    std::array<std::vector<float>*, 3> color{&frame.channel("R"), &frame.channel("G"), &frame.channel("B")};
     std::array<std::vector<float>*, 3> below{&frame.channel("background.R"), &frame.channel("background.G"),
                                              &frame.channel("background.B")};
-    const auto& alpha = frame.at("A");
     for_pixels(numbers_, frame.width, frame.height, [&](std::uint32_t i, std::size_t at) {
-        const float b[3] = {under[i].x, under[i].y, under[i].z};
-        for (int k = 0; k < 3; ++k) {
-            (*below[k])[at] = b[k];
-            (*color[k])[at] += (1 - alpha[at]) * b[k];
-        }
+        (*below[0])[at] = under[i].x, (*below[1])[at] = under[i].y, (*below[2])[at] = under[i].z;
     });
+    for (const std::string picture : {"", "noisy."}) {
+        if (!frame.has(picture + "A")) continue;
+        const std::vector<float>& alpha = frame.at(picture + "A");
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::vector<float>& color = frame.channel(picture + "RGB"[k]);
+            for (std::size_t i = 0; i < color.size(); ++i) color[i] += (1 - alpha[i]) * (*below[k])[i];
+        }
+    }
 }
 
-Frame render(RenderSession& session, const Scene& scene, const RenderControl& control) {
+void take(RenderSession& session, const Scene& scene, const RenderControl& control) {
     session.restart();
     if (scene.features && !session.march_features(scene.feature_samples, control))
         throw Error(ErrorKind::interrupted, "interrupted before the features were done; nothing was saved");
@@ -490,6 +501,10 @@ Frame render(RenderSession& session, const Scene& scene, const RenderControl& co
     } else if (session.accumulate(scene.spp, control) == 0) {
         throw Error(ErrorKind::interrupted, "interrupted before the first sample of every pixel was done; nothing was saved");
     }
+}
+
+Frame render(RenderSession& session, const Scene& scene, const RenderControl& control) {
+    take(session, scene, control);
     return session.frame(scene.background);
 }
 

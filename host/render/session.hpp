@@ -78,8 +78,12 @@ public:
     /// The picture on its device, with what was asked for so far; valid until the next call. Null where it is kept on the host: on several
     /// devices, or when it takes more than half of what the device has left.
     Film* film();
-    /// The picture on the host: one download. Over `background`, with background.R/G/B, unless that is transparent.
-    Frame frame(const Background& background = {});
+    /// The picture on the host: one download; what a filter made of the film where one ran. Over `background`, with background.R/G/B,
+    /// unless that is transparent. `beauty_alone`: without features, variances and the noisy picture.
+    Frame frame(const Background& background = {}, bool beauty_alone = false);
+
+    /// Composites R G B of this picture, and noisy.R G B beside it, over the background: C + (1 - A) B, with B in background.R/G/B.
+    void lay_background(Frame& frame, const Background& background);
 
     /// What the last set_appearance has to say: that nothing is visible.
     const std::vector<std::string>& warnings() const { return warnings_; }
@@ -122,11 +126,12 @@ private:
     bool march(March kind, int rays, bool lit, const RenderControl& control);
     std::vector<Dealer::Portion> march_portions() const;
     void resolve();
-    void lay_background(Frame& frame, const Background& background);
 };
 
-/// The scene's picture, of which the session has set all but spp, mode, features and background: features when wanted, then samples or a
-/// march. `frame.attributes` gets "clvr.spp" (samples reached). Throws Error{interrupted} when cancelled before one pass was done.
+/// Brings a session to a scene of which it has set all but spp, mode and features: features when wanted, then samples or a march. Throws
+/// Error{interrupted} when cancelled before one pass was done.
+void take(RenderSession& session, const Scene& scene, const RenderControl& control = {});
+/// The same, and the frame over the scene's background. `frame.attributes` gets "clvr.spp" (samples reached).
 Frame render(RenderSession& session, const Scene& scene, const RenderControl& control = {});
 /// A session's whole life for one picture.
 Frame render(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {},

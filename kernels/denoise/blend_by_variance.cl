@@ -6,18 +6,17 @@
 // times as many pixels get noise back.
 #include "shared/denoise_params.h"
 
-// `sums`: [rows][width] of blend_sums; `noisy`, `out`: [rows][width]. The rows of the result begin at `first`; where the rows end, windows are smaller.
-__kernel void blend_by_variance(__global const float* noisy, __global const float* out, __global const float4* sums, int width, int rows, int first, int count,
-                                __global float* result) {
+// `sums`: [rows][width] of blend_sums; planes of `size` floats by number, `noisy` and `out`: [rows][width], which is taken back in place. Where the rows end,
+// windows are smaller.
+__kernel void blend_by_variance(__global float* planes, uint size, uint noisy, uint out, __global const float4* sums, int width, int rows) {
     int x = (int)get_global_id(0), y = (int)get_global_id(1);
-    if (x >= width || y >= count) return;
+    if (x >= width || y >= rows) return;
     float4 sum = (float4)(0.0f);
-    int row = first + y;
-    for (int j = row < CLVR_BLEND_RADIUS ? 0 : row - CLVR_BLEND_RADIUS; j <= row + CLVR_BLEND_RADIUS && j < rows; ++j) sum += sums[j * width + x];
-    int at = row * width + x;
-    float bias = fma(-2.0f, sqrt(sum.y), sum.x);
+    for (int j = y < CLVR_BLEND_RADIUS ? 0 : y - CLVR_BLEND_RADIUS; j <= y + CLVR_BLEND_RADIUS && j < rows; ++j) sum += sums[(size_t)j * (size_t)width + (size_t)x];
+    size_t at = (size_t)y * (size_t)width + (size_t)x, n = size;
+    float bias = fma(-2.0f, sqrt(sum.y), sum.x), result = planes[out * n + at];
     bias = bias > 0.0f ? bias : 0.0f;
     float total = bias + sum.z;
     float share = total > 0.0f ? bias / total : 0.0f;
-    result[y * width + x] = fma(noisy[at] - out[at], share, out[at]);
+    planes[out * n + at] = fma(planes[noisy * n + at] - result, share, result);
 }

@@ -1,6 +1,7 @@
 // `clvr render` as a user sees it: pictures, scenes, sequences, interruption, bad input.
 #include "host/io/picture/frame_file.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/io/frames.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>
@@ -178,6 +179,26 @@ TEST_F(Render, OtherModesAndLights) {
         const auto& red = frame.at("R");
         EXPECT_GT(*std::max_element(red.begin(), red.end()), 0.1f) << more[1];
         EXPECT_FALSE(frame.has("albedo.R"));
+    }
+}
+
+TEST_F(Render, DenoisesTheSameBitsOnOneDeviceOnPartsAndAfterwards) {
+    for (const char* spp : {"1", "3"}) {
+        SCOPED_TRACE(spp);
+        ASSERT_EQ(run_ball({"--spp", spp, "-o", "noisy.exr"}).exit_code, 0);
+        ASSERT_EQ(Child({"denoise", path("noisy.exr"), "-o", path("after.exr")}, {}, folder.path()).wait().exit_code, 0);
+        ASSERT_EQ(run_ball({"--spp", spp, "-o", "at_once.exr", "--denoise"}).exit_code, 0);
+        EXPECT_EQ(hash("at_once.exr"), hash("after.exr"));
+        const std::vector<std::string> laid{"--spp", spp, "--denoise", "--background", "#405060"};
+        const auto with = [&](std::vector<std::string> words) {
+            words.insert(words.end(), laid.begin(), laid.end());
+            ASSERT_EQ(run_ball(words).exit_code, 0);
+        };
+        with({"-o", "one.exr", "-o", "one.png"});
+        with({"-o", "parts.exr", "--device", "cpu/2"});
+        EXPECT_EQ(hash("one.exr"), hash("parts.exr"));
+        with({"-o", "alone.png"}); // downloads the beauty alone
+        EXPECT_EQ(testing::bytes_of(path("alone.png")), testing::bytes_of(path("one.png")));
     }
 }
 
