@@ -198,7 +198,7 @@ TEST_F(Render, DenoisesTheSameBitsOnOneDeviceOnPartsAndAfterwards) {
         with({"-o", "parts.exr", "--device", "cpu/2"});
         EXPECT_EQ(hash("one.exr"), hash("parts.exr"));
         with({"-o", "alone.png"}); // downloads the beauty alone
-        EXPECT_EQ(testing::bytes_of(path("alone.png")), testing::bytes_of(path("one.png")));
+        EXPECT_EQ(test::bytes_of(path("alone.png")), test::bytes_of(path("one.png")));
     }
 }
 
