@@ -1,22 +1,24 @@
 // Back towards the noisy input where that has converged: what the denoiser changed beyond the input's own noise is its bias. With the sums of blend_sums over a
-// window of 21x21 pixels, bias^2 = max(0, sum e - 2 sqrt(sum e^2)), what exceeds twice its standard error; result = out + d bias^2 / (bias^2 + sum v), the
-// shrinkage with the least mean squared error (the positive-part James-Stein form). The variance of few samples is itself noise: over 7x7 pixels, with 1.5
-// times the variance in place of the standard error, bonsai at 2 samples per pixel lost 0.6 dB; now 2 lose nothing and 64 gain 1 dB over the network alone.
-// n/(n-1) times the variance in its place does as well at few samples and 0.1 to 0.5 dB better at 64, but gives ten times as many pixels noise back at 4.
+// window of 21x21 pixels, bias^2 = max(0, sum e - 1.5 sqrt(sum e^2)), what exceeds 1.5 times its standard error; the share bias^2 / (bias^2 + sum w v) of each
+// band comes back, the shrinkage with the least mean squared error (the positive-part James-Stein form). What was tried: datasets/results/blend.md.
 #include "shared/denoise_params.h"
 
-// `sums`: [rows][width] of blend_sums; `noisy`, `out`: [rows][width]. The rows of the result begin at `first`; where the rows end, windows are smaller.
-__kernel void blend_by_variance(__global const float* noisy, __global const float* out, __global const float4* sums, int width, int rows, int first, int count,
+static float share_of(float4 sum) {
+    float bias = fma(-1.5f, sqrt(sum.y), sum.x);
+    bias = bias > 0.0f ? bias : 0.0f;
+    float total = bias + sum.z;
+    return total > 0.0f ? bias / total : 0.0f;
+}
+
+// `bands`, `out`, `sums`: [rows][width]. The rows of the result begin at `first`; where the rows end, windows are smaller.
+__kernel void blend_by_variance(__global const float4* bands, __global const float* out, __global const float8* sums, int width, int rows, int first, int count,
                                 __global float* result) {
     int x = (int)get_global_id(0), y = (int)get_global_id(1);
     if (x >= width || y >= count) return;
-    float4 sum = (float4)(0.0f);
+    float8 sum = (float8)(0.0f);
     int row = first + y;
     for (int j = row < CLVR_BLEND_RADIUS ? 0 : row - CLVR_BLEND_RADIUS; j <= row + CLVR_BLEND_RADIUS && j < rows; ++j) sum += sums[j * width + x];
-    int at = row * width + x;
-    float bias = fma(-2.0f, sqrt(sum.y), sum.x);
-    bias = bias > 0.0f ? bias : 0.0f;
-    float total = bias + sum.z;
-    float share = total > 0.0f ? bias / total : 0.0f;
-    result[y * width + x] = fma(noisy[at] - out[at], share, out[at]);
+    float4 band = bands[row * width + x];
+    float blended = fma(band.x, share_of(sum.lo), fma(band.z, share_of(sum.hi), out[row * width + x]));
+    result[y * width + x] = blended > 0.0f ? blended : 0.0f;
 }

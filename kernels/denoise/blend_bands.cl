@@ -1,0 +1,25 @@
+// Two bands of what the denoiser changed, d = noisy - out: low = out sum k d / sum k out, its mean over 3x3 pixels as a share of the picture there (so that it stops
+// at silhouettes: k d alone spills into what is dark, and cost 0.4 to 1.1 dB), and the rest, d - low. k = 1 2 1 both ways, 1/16.
+#include "shared/denoise_params.h"
+
+// `noisy`, `variance`, `out`: [rows][width] of one colour, `out` not below 0; `noise`: the true variance per given one. bands: [rows][width] of (low, its variance,
+// rest, its variance), of independent pixels. Beyond the rows is nothing.
+__kernel void blend_bands(__global const float* noisy, __global const float* variance, __global const float* out, float noise, int width, int rows,
+                          __global float4* bands) {
+    int x = (int)get_global_id(0), y = (int)get_global_id(1);
+    if (x >= width || y >= rows) return;
+    float whole = 0.0f, change = 0.0f, spread = 0.0f;
+    for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) {
+            if (x + i < 0 || x + i >= width || y + j < 0 || y + j >= rows) continue;
+            int at = (y + j) * width + x + i;
+            float k = (i == 0 ? 2.0f : 1.0f) * (j == 0 ? 0.125f : 0.0625f);
+            whole = fma(k, out[at], whole);
+            change = fma(k, noisy[at] - out[at], change);
+            spread = fma(k * k, variance[at], spread);
+        }
+    int at = y * width + x;
+    float share = whole > 0.0f ? out[at] / whole : 0.0f, v = noise * variance[at], of_spread = noise * share * share;
+    float rest_v = fma(of_spread, spread, fma(-0.5f * share, v, v));
+    bands[at] = (float4)(share * change, of_spread * spread, fma(-share, change, noisy[at] - out[at]), rest_v > 0.0f ? rest_v : 0.0f);
+}
