@@ -146,11 +146,12 @@ void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
             const Buffer before = upload(BeautyWithoutBackground(noisy, c)), variance = upload([&](std::size_t i) { return variances[i]; }),
                          after = upload([&](std::size_t i) { return from[i]; }),
                          bands = device.buffer(rows * width * 16, "bands of rows to blend"),
+                         weights = device.buffer(rows * width * 4, "weights of rows to blend"),
                          sums = device.buffer(rows * width * 32, "sums of rows to blend"),
                          result = device.buffer(count * width * 4, "blended rows");
             device.launch(split, {width, static_cast<std::size_t>(rows)}, split.group(64), {}, before, variance, after, noise, noisy.width,
-                          rows, bands);
-            device.launch(sum, {width, static_cast<std::size_t>(rows)}, sum.group(64), {}, bands, after, noisy.width, rows, sums);
+                          rows, bands, weights);
+            device.launch(sum, {width, static_cast<std::size_t>(rows)}, sum.group(64), {}, bands, weights, noisy.width, rows, sums);
             device.launch(blend, {width, static_cast<std::size_t>(count)}, blend.group(64), {}, bands, after, sums, noisy.width, rows,
                           y - low, count, result);
             const std::vector<float> blended = device.download<float>(result, count * width);

@@ -3,9 +3,9 @@
 #include "shared/denoise_params.h"
 
 // `noisy`, `variance`, `out`: [rows][width] of one colour, `out` not below 0; `noise`: the true variance per given one. bands: [rows][width] of (low, its variance,
-// rest, its variance), of independent pixels. Beyond the rows is nothing.
+// rest, its variance), of independent pixels; weights: [rows][width], 1 / (out + 0.01). Beyond the rows is nothing.
 __kernel void blend_bands(__global const float* noisy, __global const float* variance, __global const float* out, float noise, int width, int rows,
-                          __global float4* bands) {
+                          __global float4* bands, __global float* weights) {
     int x = (int)get_global_id(0), y = (int)get_global_id(1);
     if (x >= width || y >= rows) return;
     float whole = 0.0f, change = 0.0f, spread = 0.0f;
@@ -21,5 +21,6 @@ __kernel void blend_bands(__global const float* noisy, __global const float* var
     int at = y * width + x;
     float share = whole > 0.0f ? out[at] / whole : 0.0f, v = noise * variance[at], of_spread = noise * share * share;
     float rest_v = fma(of_spread, spread, fma(-0.5f * share, v, v));
+    weights[at] = 1.0f / (out[at] + 0.01f);
     bands[at] = (float4)(share * change, of_spread * spread, fma(-share, change, noisy[at] - out[at]), rest_v > 0.0f ? rest_v : 0.0f);
 }
