@@ -18,7 +18,7 @@ inline const std::map<std::string, std::string> golden_hashes{
     {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
     {"phase", "058b1810a58a8293e829c4dd945164c674cf4f2e95fe57c110422890b2581fab"},
 };
-inline const std::string golden_denoised_hash = "f96ec492ce7dc7c59752268c3ac332b6b87db09397b1cf84bb0eaa3f572694bf";
+inline const std::string golden_denoised_hash = "2f842ced212505c430e78eb0b9e46d27e9a9d89534f993d17779341a72dc449b";
 inline const std::string golden_picture_hash = "2c07f91612a8c167ca073ebabb40784351204816e48cd06a6cb0b87850e4cd75";
 
 /// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
