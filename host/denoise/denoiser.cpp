@@ -11,8 +11,6 @@ namespace clvr {
 
 namespace {
 
-constexpr const char* colours[] = {"R", "G", "B"};
-
 /// Tiles begin at multiples of `align`, so that their grid cells are the picture's, and read `halo` pixels around what they give.
 struct Tiling {
     int align = 1, halo = 0;
@@ -118,7 +116,7 @@ void blend_by_variance(Device& device, const Frame& noisy, Frame& done) {
     constexpr int band = 256;
     Kernel sum = device.kernel("denoise/blend_sums"), blend = device.kernel("denoise/blend_by_variance");
     const auto width = static_cast<std::size_t>(noisy.width);
-    for (const char* c : colours) {
+    for (const char* c : colour_channels) {
         std::vector<float>& to = done.channel(c);
         const std::vector<float> from = to;
         for (int y = 0; y < noisy.height; y += band) {
@@ -192,11 +190,11 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     s.repaired = 0;
     Frame done = frame;
     const int levels = static_cast<int>(s.model.levels.size());
-    for (const char* c : colours) done.channels[std::string("noisy.") + c] = frame.at(c);
+    for (const char* c : colour_channels) done.channels[std::string("noisy.") + c] = frame.at(c);
     std::vector<std::vector<float>*> results, outputs;
-    for (const char* c : colours) results.push_back(&done.channel(c));
+    for (const char* c : colour_channels) results.push_back(&done.channel(c));
     for (int l = 1; view.levels && l <= levels; ++l)
-        for (const char* c : colours) results.push_back(&done.channel(fmt::format("level{}.{}", l, c)));
+        for (const char* c : colour_channels) results.push_back(&done.channel(fmt::format("level{}.{}", l, c)));
     for (int l = 1; l <= levels; ++l) outputs.push_back(view.guides ? &done.channel(fmt::format("guide.{}", l)) : nullptr);
     for (int l = 1; l < levels; ++l) outputs.push_back(view.weights ? &done.channel(fmt::format("weight.{}", l)) : nullptr);
 
@@ -219,7 +217,7 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
         blend_by_variance(s.device, frame, done);
     }
     const std::vector<float>* const opacity = done.has("A") ? done.find("A") : frame.opacity();
-    for (const char* c : colours) {
+    for (const char* c : colour_channels) {
         const std::vector<float>* const background = frame.find(std::string("background.") + c);
         if (!background || !opacity) continue;
         std::vector<float>& to = done.channel(c);
