@@ -30,7 +30,7 @@ namespace clvr {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* version = "driver trial 1";
+constexpr const char* trial_version = "driver trial 1";
 constexpr unsigned patience_s = 600; // a driver on a busy machine (seen: 60 s at a load of 30) is not a driver that hangs
 constexpr const char* source = "__kernel void trial(__global uint* x) { x[get_global_id(0)] += 41u; }";
 
@@ -171,7 +171,7 @@ std::string stamp(const fs::path& file) {
 
 /// All that decides whether drivers work: their registrations and files, their settings, the programs that they call.
 std::string circumstances() {
-    std::string all = version;
+    std::string all = trial_version;
     const auto add = [&](const std::string& line) { all += '\n' + line; };
     for (char** variable = environ; *variable; ++variable)
         for (const char* start :
@@ -226,7 +226,7 @@ DriverProblems try_drivers() {
     if (path && fs::exists(*path, none)) return {};
     const Trial trial = try_all();
     for (const auto& [platform, what] : trial.problems) spdlog::debug("OpenCL platform {} {}", platform, what);
-    if (path && trial.complete && trial.problems.empty()) replace_file(*path, std::string(version) + "\n");
+    if (path && trial.complete && trial.problems.empty()) replace_file(*path, std::string(trial_version) + "\n");
     return trial.problems;
 }
 

@@ -17,7 +17,7 @@ namespace clvr {
 namespace fs = std::filesystem;
 namespace {
 
-std::string load(const std::string& library) {
+std::string load_library(const std::string& library) {
     void* handle = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (!handle) return fmt::format("cannot be loaded ({})", dlerror());
     const bool driver = dlsym(handle, "clIcdGetPlatformIDsKHR") || dlsym(handle, "clGetExtensionFunctionAddress");
@@ -33,7 +33,7 @@ std::string why_no_driver(const std::string& library) {
     if (child == 0) {
         alarm(10); // a lock that another thread held at the fork
         if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0) dup2(nowhere, STDERR_FILENO);
-        const std::string why = load(library);
+        const std::string why = load_library(library);
         const ssize_t written = write(ends[1], why.data(), why.size());
         _exit(written == static_cast<ssize_t>(why.size()) ? 0 : 1);
     }

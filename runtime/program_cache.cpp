@@ -9,10 +9,10 @@
 namespace clvr {
 namespace {
 
-constexpr std::string_view format = "clvr program 1";
+constexpr std::string_view program_format = "clvr program 1";
 
 std::string header_of(const std::string& key, std::string_view binary) {
-    return fmt::format("{}\n{}\n{}\n{}\n", format, key, binary.size(), sha256_hex(binary));
+    return fmt::format("{}\n{}\n{}\n{}\n", program_format, key, binary.size(), sha256_hex(binary));
 }
 
 std::filesystem::path entry_path(const std::filesystem::path& folder, const std::string& key) { return folder / "programs" / key; }
@@ -20,7 +20,8 @@ std::filesystem::path entry_path(const std::filesystem::path& folder, const std:
 } // namespace
 
 std::string program_key(const DeviceFacts& facts, std::string_view source, std::string_view options) {
-    return sha256_hex({format, source, options, facts.name, facts.version, facts.driver_version, facts.platform, facts.platform_version});
+    return sha256_hex(
+        {program_format, source, options, facts.name, facts.version, facts.driver_version, facts.platform, facts.platform_version});
 }
 
 std::string encode_entry(const std::string& key, std::string_view binary) { return header_of(key, binary).append(binary); }

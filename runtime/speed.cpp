@@ -17,9 +17,9 @@
 namespace clvr {
 namespace {
 
-constexpr const char* version = "speed 1"; // of the probe and of the stored form
+constexpr const char* speed_version = "speed 1"; // of the probe and of the stored form
 
-std::filesystem::path stored_path(const std::filesystem::path& folder, const std::string& key) {
+std::filesystem::path speed_path(const std::filesystem::path& folder, const std::string& key) {
     return folder / "fastest" / (key + ".json");
 }
 
@@ -51,11 +51,11 @@ double probe_speed_ms(const DeviceFacts& facts) {
 }
 
 std::size_t fastest_device(const std::vector<DeviceFacts>& devices, const std::vector<std::size_t>& candidates) {
-    std::string list = version;
+    std::string list = speed_version;
     for (const std::size_t i : candidates)
         list += fmt::format("\n{}|{}|{}|{}", devices[i].platform, devices[i].platform_version, devices[i].name, devices[i].driver_version);
     const auto folder = cache_folder();
-    const auto path = folder ? std::optional(stored_path(*folder, sha256_hex(list))) : std::nullopt;
+    const auto path = folder ? std::optional(speed_path(*folder, sha256_hex(list))) : std::nullopt;
     if (const auto text = path ? load_file(*path) : std::nullopt) {
         const auto json = nlohmann::json::parse(*text, nullptr, false);
         const auto fastest = json.is_object() && json.contains("fastest") && json["fastest"].is_number_unsigned()

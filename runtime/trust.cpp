@@ -21,7 +21,7 @@ namespace clvr {
 namespace {
 
 constexpr std::size_t vectors = 10240;
-constexpr const char* version = "trust 1"; // of the operands and of the stored form
+constexpr const char* trust_version = "trust 1"; // of the operands and of the stored form
 
 std::uint32_t bits(float x) {
     std::uint32_t result;
@@ -129,16 +129,15 @@ std::vector<std::size_t> differences(Device& device, const Operands& o, std::siz
 
 /// What decides the result: the probe itself and the versions of device, driver and platform.
 std::string key_of(const DeviceFacts& device) {
-    return sha256_hex({version, program_key(device, expand_source("probe/trust.cl", read_kernel_file).text, build_options(device, {}))});
+    return sha256_hex(
+        {trust_version, program_key(device, expand_source("probe/trust.cl", read_kernel_file).text, build_options(device, {}))});
 }
 
-std::filesystem::path stored_path(const std::filesystem::path& folder, const std::string& key) {
-    return folder / "trust" / (key + ".json");
-}
+std::filesystem::path trust_path(const std::filesystem::path& folder, const std::string& key) { return folder / "trust" / (key + ".json"); }
 
-std::optional<Trust> load(const std::string& key) {
+std::optional<Trust> load_trust(const std::string& key) {
     const auto folder = cache_folder();
-    const auto text = folder ? load_file(stored_path(*folder, key)) : std::nullopt;
+    const auto text = folder ? load_file(trust_path(*folder, key)) : std::nullopt;
     if (!text) return std::nullopt;
     try {
         const auto json = nlohmann::json::parse(*text);
@@ -150,7 +149,7 @@ std::optional<Trust> load(const std::string& key) {
 
 void store(const std::string& key, const Trust& trust) {
     const nlohmann::json json{{"failures", trust.failures}, {"denormals_in", trust.denormals_in}, {"denormals_out", trust.denormals_out}};
-    if (const auto folder = cache_folder()) replace_file(stored_path(*folder, key), json.dump(2) + "\n");
+    if (const auto folder = cache_folder()) replace_file(trust_path(*folder, key), json.dump(2) + "\n");
 }
 
 } // namespace
@@ -184,7 +183,7 @@ bool has_faulty_results(const DeviceFacts& device) {
 
 } // namespace
 
-std::optional<Trust> stored_trust(const DeviceFacts& device) { return load(key_of(device)); }
+std::optional<Trust> stored_trust(const DeviceFacts& device) { return load_trust(key_of(device)); }
 
 Trust trust_of(const DeviceFacts& device) {
     if (has_faulty_results(device)) return probe_trust(device);
@@ -194,7 +193,7 @@ Trust trust_of(const DeviceFacts& device) {
     const std::string key = key_of(device);
     auto found = known.find(key);
     if (found == known.end()) {
-        auto trust = load(key);
+        auto trust = load_trust(key);
         if (!trust) store(key, *(trust = probe_trust(device)));
         found = known.emplace(key, *trust).first;
     }

@@ -18,16 +18,16 @@ namespace clvr {
 
 namespace {
 
-struct Options {
+struct AblationOptions {
     AblationSettings settings;
     std::string folder;
     bool json = false;
     DeviceOptions device;
 
-    Options() { settings.training = ablation_training(); }
+    AblationOptions() { settings.training = ablation_training(); }
 };
 
-void check(const Options& o) {
+void check(const AblationOptions& o) {
     const auto range = [](const char* name, double value, double low, double high) {
         if (!(value >= low && value <= high))
             throw Error(ErrorKind::usage, fmt::format("is {}; expected {} to {}", value, low, high), name);
@@ -43,7 +43,7 @@ void check(const Options& o) {
     for (const int spp : o.settings.spp) range("--spp", spp, 1, 1 << 20);
 }
 
-void ablation(const Options& o, const std::string& command) {
+void ablation(const AblationOptions& o, const std::string& command) {
     check(o);
     const std::atomic<bool>& interrupted = catch_interrupts();
     const Device device = open_device(o.device);
@@ -66,7 +66,7 @@ void add_ablation_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand(
         "ablation",
         "Train the network with fewer or other input channels and switches, and measure each; goes on where it was interrupted");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<AblationOptions>();
     AblationSettings& s = o->settings;
     c->add_option("DIR", s.train, "Folders of training pairs")->type_name("DIR");
     c->add_option("-o,--output", o->folder, "Folder to fill")->type_name("DIR")->group("Output");

@@ -18,7 +18,7 @@ namespace clvr {
 
 namespace {
 
-struct Options {
+struct CompareOptions {
     std::string image, reference, map;
     Tonemap tonemap{"none", 0};
     bool json = false;
@@ -30,7 +30,7 @@ std::string beside(const std::string& path, const char* what) {
     return (p.parent_path() / (p.stem().string() + "." + what + p.extension().string())).string();
 }
 
-Metrics compare_pictures(const Options& o, const Frame& image, const Frame& reference) {
+Metrics compare_pictures(const CompareOptions& o, const Frame& image, const Frame& reference) {
     Metrics m;
     try {
         m = compare_frames(image, reference);
@@ -58,7 +58,7 @@ Frame picture_of(const std::string& path, const Tonemap& tonemap) {
     return mapped;
 }
 
-void compare(const Options& o) {
+void compare(const CompareOptions& o) {
     if (!o.map.empty()) {
         if (is_exr_path(o.map))
             throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected a name that ends in .png or .jpg", o.map), "--map");
@@ -86,7 +86,7 @@ void compare(const Options& o) {
 
 void add_compare_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("compare", "PSNR, SSIM, RMSE, SMAPE, relMSE and FLIP of a picture against its reference");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<CompareOptions>();
     c->add_option("A", o->image, "Picture (.exr, .hdr, .pfm, .png or .jpg)")->type_name("FILE")->required();
     c->add_option("B", o->reference, "Reference of the same kinds, as large")->type_name("FILE")->required();
     c->add_flag("--json", o->json, "Print JSON")->group("Output");

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-struct Options {
+struct DatasetOptions {
     std::string name, folder = ".", output, dims, type;
     std::uint64_t seed = 0;
     bool json = false;
@@ -43,7 +43,7 @@ ordered_json to_json(const Dataset& d) {
     return j;
 }
 
-void list(const Options& o) {
+void list(const DatasetOptions& o) {
     if (o.json) {
         ordered_json all = ordered_json::array();
         for (const Dataset& d : datasets()) all.push_back(to_json(d));
@@ -56,7 +56,7 @@ void list(const Options& o) {
     fmt::print("computed by `clvr dataset make`, or as demo:NAME: {}\n", fmt::join(phantom_names(), ", "));
 }
 
-void info(const Options& o) {
+void info(const DatasetOptions& o) {
     const Dataset& d = dataset_named(o.name);
     if (o.json) {
         fmt::print("{}", json_text(to_json(d)));
@@ -81,7 +81,7 @@ std::vector<std::string> fetched_files(const std::string& folder) {
     return all;
 }
 
-void fetch(const Options& o) {
+void fetch(const DatasetOptions& o) {
     const Dataset& d = dataset_named(o.name);
     if (d.url.empty())
         throw Error(ErrorKind::usage,
@@ -105,7 +105,7 @@ void fetch(const Options& o) {
     spdlog::info("{}: {} (licence: {})", path, d.title, d.licence);
 }
 
-void make(const Options& o) {
+void make(const DatasetOptions& o) {
     if (o.output.empty()) throw Error(ErrorKind::usage, "no output given: add -o volume.nii.gz (or .nii)", "clvr dataset make");
     PhantomOptions options;
     options.seed = o.seed;
@@ -128,7 +128,7 @@ void make(const Options& o) {
 void add_dataset_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("dataset", "Volumes that others publish, and volumes that clvr computes");
     c->require_subcommand(1);
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<DatasetOptions>();
 
     CLI::App* l = c->add_subcommand("list", "What there is");
     l->add_flag("--json", o->json, "Print JSON")->group("Output");

@@ -25,7 +25,7 @@ namespace clvr {
 
 namespace {
 
-struct Options {
+struct DenoiseOptions {
     std::string input, model, albedo, normal; // model empty: by what the frame has
     std::vector<std::string> outputs, show, map;
     int spp = 0; ///< 0: as the frame says
@@ -117,7 +117,7 @@ void add_pass(Frame& frame, const std::string& path, const std::string& pass) {
 }
 
 /// The input with clvr's names for its channels.
-Frame input_frame(const Options& o) {
+Frame input_frame(const DenoiseOptions& o) {
     Frame frame = read_noted(o.input);
     if (o.spp > 0) frame.attributes["clvr.spp"] = std::to_string(o.spp);
     about(o.input, [&] {
@@ -148,7 +148,7 @@ std::string layers_of(const std::vector<std::string>& channels) {
 
 /// The model for the frame: `named`, else the first one inside clvr whose channels the frame has. Channels that the model reads and that
 /// can be made are added to the frame, and named in `made`.
-Model model_for(const Options& o, const std::optional<Model>& named, Frame& frame, std::vector<std::string>& made) {
+Model model_for(const DenoiseOptions& o, const std::optional<Model>& named, Frame& frame, std::vector<std::string>& made) {
     const auto keep = [&](const MadeChannels& channels) {
         if (!channels.said.empty()) spdlog::info("{}: {}", o.input, channels.said);
         made.insert(made.end(), channels.names.begin(), channels.names.end());
@@ -180,7 +180,7 @@ Model model_for(const Options& o, const std::optional<Model>& named, Frame& fram
     return *named;
 }
 
-void denoise(const Options& o) {
+void denoise(const DenoiseOptions& o) {
     if (o.outputs.empty())
         throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .jpg, or .exr for all channels)", "clvr denoise");
     if (o.spp < 0 || o.spp > largest_spp)
@@ -218,7 +218,7 @@ void denoise(const Options& o) {
 
 void add_denoise_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("denoise", "Denoise a picture with a trained network");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<DenoiseOptions>();
     c->add_option("IN", o->input, "Noisy picture: .exr of any renderer, .hdr, .pfm, .png or .jpg")->type_name("FILE")->required();
     c->add_option("-o,--output", o->outputs, "Picture to write: .png, .jpg, or .exr with all channels (may be given twice)")
         ->type_name("FILE")

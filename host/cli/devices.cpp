@@ -27,7 +27,7 @@ namespace {
 constexpr std::pair<const char*, const char*> tasks[] = {{"render", "renders"}, {"denoise", "denoises"}, {"train", "trains"}};
 
 /// All that the command shows.
-struct Report {
+struct DevicesReport {
     std::vector<PlatformFacts> platforms;
     std::map<int, std::string> trust;           ///< by index: "ok", the failing operations, or why the device was not probed
     std::optional<Selection> selection;         ///< of the first task
@@ -35,7 +35,7 @@ struct Report {
     std::optional<Error> error;                 ///< why nothing is selected
 };
 
-bool selected(const Report& report, int index) {
+bool selected(const DevicesReport& report, int index) {
     const auto in = [&](const Selection& s) {
         return std::any_of(s.devices.begin(), s.devices.end(), [&](const DeviceFacts& d) { return d.index == index; });
     };
@@ -67,8 +67,8 @@ std::string trust_text(const DeviceFacts& device, bool worth_probing) {
     }
 }
 
-Report make_report(const std::string& selector) {
-    Report report;
+DevicesReport make_report(const std::string& selector) {
+    DevicesReport report;
     report.platforms = list_platforms();
     try {
         report.selection = select_devices(selector, tasks[0].first);
@@ -86,7 +86,7 @@ Report make_report(const std::string& selector) {
     return report;
 }
 
-void print_text(const Report& report) {
+void print_text(const DevicesReport& report) {
     std::size_t name_width = 6, driver_width = 6;
     for (const PlatformFacts& platform : report.platforms)
         for (const DeviceFacts& device : platform.devices) {
@@ -157,7 +157,7 @@ nlohmann::json to_json(const Selection& selection) {
     return {{"devices", devices}, {"rule", selection.rule}};
 }
 
-void print_json(const Report& report) {
+void print_json(const DevicesReport& report) {
     nlohmann::json platforms = nlohmann::json::array();
     for (const PlatformFacts& platform : report.platforms) {
         nlohmann::json devices = nlohmann::json::array();
@@ -170,14 +170,14 @@ void print_json(const Report& report) {
     fmt::print("{}", json_text(nlohmann::json{{"platforms", platforms}, {"selection", selection}}));
 }
 
-struct Options {
+struct DevicesOptions {
     std::string selector;
     bool json = false;
 };
 
-void devices_command(const Options& options) {
+void devices_command(const DevicesOptions& options) {
     for (const std::string& driver : unloadable_drivers()) spdlog::warn("an OpenCL driver is missing: {}", driver);
-    const Report report = make_report(options.selector);
+    const DevicesReport report = make_report(options.selector);
     if (options.json)
         print_json(report);
     else if (!report.platforms.empty())
@@ -189,7 +189,7 @@ void devices_command(const Options& options) {
 } // namespace
 
 void add_devices_command(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<DevicesOptions>();
     CLI::App* command = app.add_subcommand("devices", "What OpenCL offers here, and which device clvr will use and why");
     command
         ->add_option("--device", options->selector,

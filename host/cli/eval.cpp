@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-struct Options {
+struct EvalOptions {
     std::string folder, tune, report;
     std::vector<std::string> models;
     Tonemap tonemap;
@@ -33,7 +33,7 @@ struct Options {
     DeviceOptions device;
 };
 
-ordered_json json_of(const Evaluation& e, const Options& o, const Baselines& b) {
+ordered_json json_of(const Evaluation& e, const EvalOptions& o, const Baselines& b) {
     ordered_json all{{"folder", o.folder}, {"models", o.models}};
     all.update(to_json(b));
     all.update(to_json(e));
@@ -63,7 +63,7 @@ std::vector<std::string> names_of(const std::vector<std::string>& paths) {
     return names;
 }
 
-void eval(Options o) {
+void eval(EvalOptions o) {
     if (o.models.empty()) o.models = {"default"};
     if (!o.report.empty()) check_writable(o.report);
     const ToneCurve known(o.tonemap);
@@ -100,7 +100,7 @@ void eval(Options o) {
         r.tonemap = o.tonemap;
         r.trainings = trainings;
         const std::string html = html_report({{"", o.frame, e, all}}, o.folder, r);
-        write_atomically(o.report, html.data(), html.size());
+        write_atomically(o.report, html);
     }
     if (o.json)
         fmt::print("{}", json_text(json_of(e, o, baselines)));
@@ -113,7 +113,7 @@ void eval(Options o) {
 
 void add_eval_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("eval", "Measure models and classical denoisers on a folder of test pairs");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<EvalOptions>();
     c->add_option("DIR", o->folder, "Folder that `clvr pairs --split test` made")->type_name("DIR")->required();
     c->add_option("--report", o->report, "Also write one self-contained page with pictures, crops and curves")
         ->type_name("FILE.html")

@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-struct Options {
+struct ExperimentOptions {
     RenderOptions picture; ///< of these --tf, --size, --seed
     std::string scene, scale = "quick", folder, volume, dims;
     std::optional<int> views, test_views, reference_spp, test_reference_spp, epochs, batch, patch;
@@ -53,7 +53,7 @@ const Dataset* published(const std::string& scene) {
 }
 
 /// Where the volume comes from: into settings.computed, or the path that is to be read.
-std::string source_of(const Options& o, const Dataset* dataset, ExperimentSettings& s) {
+std::string source_of(const ExperimentOptions& o, const Dataset* dataset, ExperimentSettings& s) {
     std::error_code failed;
     if (!o.volume.empty() && o.fetch) throw Error(ErrorKind::usage, "is given with --fetch; leave one of them out", "--volume");
     if (!o.volume.empty()) return fs::absolute(o.volume).string();
@@ -78,7 +78,7 @@ std::string source_of(const Options& o, const Dataset* dataset, ExperimentSettin
                 o.scene);
 }
 
-ExperimentSettings settings_of(const Options& o) {
+ExperimentSettings settings_of(const ExperimentOptions& o) {
     ExperimentSettings s = scale_settings(o.scale);
     const Dataset* dataset = published(o.scene);
     const std::string volume = source_of(o, dataset, s);
@@ -113,7 +113,7 @@ ExperimentSettings settings_of(const Options& o) {
     return s;
 }
 
-void fetch(const Options& o, const std::string& folder, const std::atomic<bool>& interrupted) {
+void fetch(const ExperimentOptions& o, const std::string& folder, const std::atomic<bool>& interrupted) {
     const Dataset& d = *published(o.scene);
     std::error_code failed;
     fs::create_directories(folder, failed);
@@ -172,7 +172,7 @@ void print_plan(const ExperimentSettings& s, const std::string& folder, const Ex
     fmt::print("\nEstimated from a probe of {}.\n", duration_text(e.probe_seconds));
 }
 
-void experiment(const Options& o, const std::string& command) {
+void experiment(const ExperimentOptions& o, const std::string& command) {
     const ExperimentSettings settings = settings_of(o);
     const std::string folder = o.folder.empty() ? settings.name + "-" + settings.scale : o.folder;
     if (o.folder.empty()) // those of a folder that was named are known already
@@ -206,7 +206,7 @@ void experiment(const Options& o, const std::string& command) {
 void add_experiment_command(CLI::App& app) {
     CLI::App* c =
         app.add_subcommand("experiment", "Volume, views, training, measurement and report of a scene; goes on where it was interrupted");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<ExperimentOptions>();
     c->add_option("SCENE", o->scene,
                   fmt::format("head, beetle, snake (the published scenes' computed stand-ins), {}, a published volume, or a volume file",
                               fmt::join(phantom_names(), ", ")))

@@ -22,7 +22,7 @@ namespace clvr {
 
 namespace {
 
-struct Options {
+struct InfoOptions {
     std::string input, selector;
     VolumeReadOptions volume;
     bool json = false;
@@ -36,7 +36,7 @@ struct MemoryPlan {
     std::string problem; ///< why there is no layout, or why it does not fit
 };
 
-struct Report {
+struct InfoReport {
     Voxels volume;
     Histogram histogram; ///< over stored values
     std::array<double, 2> range{};
@@ -85,15 +85,15 @@ MemoryPlan plan_for(const Device& device, const Voxels& v, const MajorantGrid& g
     return plan;
 }
 
-Voxels volume_of(const Options& o) {
+Voxels volume_of(const InfoOptions& o) {
     if (!is_demo_volume(o.input)) return read_volume(o.input, o.volume);
     std::vector devices{Device::open(select_devices(o.selector, "render").devices.front())};
     return open_volume(o.input, o.volume, devices);
 }
 
 /// What the file holds: without any device.
-Report make_report(const Options& o) {
-    Report r;
+InfoReport make_report(const InfoOptions& o) {
+    InfoReport r;
     r.volume = volume_of(o);
     const Voxels& v = r.volume;
     r.histogram = stored_histogram(v);
@@ -108,7 +108,7 @@ Report make_report(const Options& o) {
 }
 
 /// Adds what the devices would hold; where there is none, why. Throws Error for a device that was asked for.
-void add_plans(Report& r, const Options& o) {
+void add_plans(InfoReport& r, const InfoOptions& o) {
     try {
         const Selection selection = select_devices(o.selector, "render");
         const MajorantGrid grid = majorant_grid(r.volume);
@@ -143,7 +143,7 @@ void print_plan(const MemoryPlan& plan, const Voxels& v) {
 }
 
 /// All but the memory plans.
-void print_text(const Report& r) {
+void print_text(const InfoReport& r) {
     const Voxels& v = r.volume;
     const Geometry& g = v.geometry;
     const Double3 size = size_mm(v);
@@ -173,7 +173,7 @@ void print_text(const Report& r) {
     for (const std::string& note : v.notes) print_line("note", note);
 }
 
-void print_plans(const Report& r) {
+void print_plans(const InfoReport& r) {
     for (const MemoryPlan& plan : r.plans) print_plan(plan, r.volume);
     if (r.plans.empty()) print_line("device", "none: " + r.rule);
 }
@@ -192,7 +192,7 @@ nlohmann::json to_json(const MemoryPlan& plan) {
     return j;
 }
 
-void print_json(const Report& r) {
+void print_json(const InfoReport& r) {
     const Voxels& v = r.volume;
     nlohmann::json plans = nlohmann::json::array();
     for (const MemoryPlan& plan : r.plans) plans.push_back(to_json(plan));
@@ -225,7 +225,7 @@ void print_json(const Report& r) {
 } // namespace
 
 void add_info_command(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<InfoOptions>();
     CLI::App* command = app.add_subcommand("info", "What a volume holds: geometry, type, range, histogram, bricks, memory plan");
     command->add_option("VOLUME", options->input, "Volume file or folder, or demo:head and the like")
         ->type_name("FILE|DIR|DEMO")
@@ -243,7 +243,7 @@ void add_info_command(CLI::App& app) {
     add_volume_options(*command, options->volume);
     reads_files(*command, {"VOLUME"});
     command->callback([options] {
-        Report report = make_report(*options);
+        InfoReport report = make_report(*options);
         if (!options->json) print_text(report);
         std::fflush(stdout); // whatever drivers do then
         add_plans(report, *options);

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct PairsOptions {
     RenderOptions scene;
     std::string folder, split = "train", zoom_range = "1,1";
     std::vector<std::string> variations;
@@ -43,7 +43,7 @@ std::vector<std::string> written_in(const std::string& folder, bool goes_on) {
     return files;
 }
 
-PairsPlan plan_of(const Options& o) {
+PairsPlan plan_of(const PairsOptions& o) {
     if (is_plan(o.scene.input)) return parse_pairs_plan(read_text(o.scene.input), o.scene.input);
     const auto check = [](const char* name, int value, int low, int high) {
         if (value < low || value > high) throw Error(ErrorKind::usage, fmt::format("is {}; expected {} to {}", value, low, high), name);
@@ -82,7 +82,7 @@ PairsPlan plan_of(const Options& o) {
     return p;
 }
 
-void pairs(const Options& o) {
+void pairs(const PairsOptions& o) {
     if (o.folder.empty()) throw Error(ErrorKind::usage, "no folder given: add -o DIR", "clvr pairs");
     if (o.scene.input.empty())
         throw Error(ErrorKind::usage, "no volume given: name a file or folder, or demo:head for the built-in one", "clvr pairs");
@@ -115,7 +115,7 @@ void pairs(const Options& o) {
 
 void add_pairs_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("pairs", "Render views around a volume as noisy frames and references, for training and testing");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<PairsOptions>();
     c->add_option("-o,--output", o->folder, "Folder to fill; an unfinished one is continued")->type_name("DIR")->group("Output");
     c->add_option("--views", o->views, "Number of views [100]")->group("Pairs");
     c->add_option("--reference-spp", o->reference_spp, "Samples per pixel of the references; 0: none [1024]")->group("Pairs");

@@ -26,7 +26,7 @@
 namespace clvr {
 namespace {
 
-struct Options {
+struct SelftestOptions {
     std::string selector;
     std::vector<std::string> checks;
     bool json = false;
@@ -74,7 +74,7 @@ struct Running {
 };
 
 /// Tests the selected devices and says what was found. Throws Error{device} when one of them cannot be trusted.
-void test_devices(const Options& o, const std::vector<const selftest::Check*>& wanted, Running& running) {
+void test_devices(const SelftestOptions& o, const std::vector<const selftest::Check*>& wanted, Running& running) {
     const auto note = [&](const std::string& text) { std::snprintf(running.text, sizeof running.text, "%s", text.c_str()); };
     note("listing the devices");
     nlohmann::json devices = nlohmann::json::array();
@@ -103,7 +103,7 @@ void test_devices(const Options& o, const std::vector<const selftest::Check*>& w
 
 /// Some drivers end the process that loads them. So a child does the work; this process never calls OpenCL and says what the child was
 /// doing.
-void selftest_command(const Options& o) {
+void selftest_command(const SelftestOptions& o) {
     const auto wanted = selftest::chosen_checks(o.checks);
     void* memory = mmap(nullptr, sizeof(Running), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED) throw Error(ErrorKind::memory, "no memory to share with a child process");
@@ -129,7 +129,7 @@ void selftest_command(const Options& o) {
 } // namespace
 
 void add_selftest_command(CLI::App& app) {
-    const auto options = std::make_shared<Options>();
+    const auto options = std::make_shared<SelftestOptions>();
     CLI::App* command = app.add_subcommand("selftest", "Check that a device computes what it should (exit code 4: it does not)");
     command->add_option("--device", options->selector, "An index, cpu, gpu, part of a name, cpu/2, several joined by +")
         ->type_name("SEL")

@@ -17,7 +17,7 @@ namespace clvr {
 
 namespace {
 
-struct Options {
+struct TrainOptions {
     std::vector<std::string> folders, channels, levels;
     std::string output, init, validate, loss = "shifted-gamma", target = "reference", schedule = "constant", convolution = "direct";
     TrainerConfig trainer;
@@ -41,7 +41,7 @@ std::string loss_names() {
     return names;
 }
 
-Loss loss_of(const Options& o) {
+Loss loss_of(const TrainOptions& o) {
     if (o.target == "noisy") return Loss::noisy;
     if (o.target != "reference") throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected reference or noisy", o.target), "--target");
     for (const auto& [name, loss] : losses)
@@ -58,7 +58,7 @@ Model::Level level_of(const std::string& text) {
     throw Error(ErrorKind::usage, fmt::format("has \"{}\"; expected PIXELS:CODES, as 4:4", text), "--levels");
 }
 
-Model start_of(const Options& o) {
+Model start_of(const TrainOptions& o) {
     if (!o.init.empty()) {
         for (const auto& [name, given] : {std::pair("--channels", &o.channels), {"--levels", &o.levels}})
             if (!given->empty()) throw Error(ErrorKind::usage, "is set by the model of --init; leave one of them out", name);
@@ -90,7 +90,7 @@ Model start_of(const Options& o) {
     return m;
 }
 
-void check(const Options& o) {
+void check(const TrainOptions& o) {
     const auto range = [](const char* name, double value, double low, double high) {
         if (!(value >= low && value <= high))
             throw Error(ErrorKind::usage, fmt::format("is {}; expected {} to {}", value, low, high), name);
@@ -111,7 +111,7 @@ void check(const Options& o) {
         throw Error(ErrorKind::usage, fmt::format("is \"{}\"; expected constant or cosine", o.schedule), "--schedule");
 }
 
-void train(Options o) {
+void train(TrainOptions o) {
     check(o);
     o.trainer.step.loss = loss_of(o);
     o.trainer.step.convolution = o.convolution == "clblast" ? ConvolutionBackend::clblast : ConvolutionBackend::direct;
@@ -144,7 +144,7 @@ void train(Options o) {
 
 void add_train_command(CLI::App& app) {
     CLI::App* c = app.add_subcommand("train", "Train a denoiser on folders that `clvr pairs` made");
-    auto o = std::make_shared<Options>();
+    auto o = std::make_shared<TrainOptions>();
     TrainerConfig& t = o->trainer;
     c->add_option("DIR", o->folders, "Folders of training pairs")->type_name("DIR");
     c->add_option("-o,--output", o->output, "Model to write (.safetensors); beside it .last.safetensors, .checkpoint and .training.csv")

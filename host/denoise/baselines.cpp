@@ -12,19 +12,16 @@ namespace clvr {
 
 namespace {
 
-constexpr const char* colours[] = {"R", "G", "B"};
 constexpr const char* features[CLVR_FILTER_FEATURES] = {"opacity.A", "albedo.R", "albedo.G", "albedo.B",
                                                         "normal.X",  "normal.Y", "normal.Z", "depth.Z"};
 constexpr float albedo_floor = 1.0f / 32, opacity_floor = 1.0f / 256;
 constexpr int pad = 32, wavelet_levels = 5;
 
-float finite(float v) { return std::isfinite(v) ? v : 0; }
-
 /// A frame on the device as FilterParams says.
 class Filter {
 public:
     Filter(const Device& device, const Frame& frame) : device_(device), frame_(frame) {
-        for (const char* c : colours)
+        for (const char* c : colour_channels)
             if (!frame.has(c)) throw Error(ErrorKind::input, fmt::format("lacks channel {}", c));
         width_ = NeuralGrid::pixel_width(device);
         shape_.width = frame.width, shape_.height = frame.height, shape_.pad = pad, shape_.step = 1;
@@ -62,8 +59,8 @@ public:
         Frame f = frame_.blank();
         f.attributes = frame_.attributes, f.further = frame_.further;
         for (int c = 0; c < 3; ++c) {
-            std::vector<float>& to = f.channel(colours[c]);
-            const std::vector<float>* const background = frame_.find(std::string("background.") + colours[c]);
+            std::vector<float>& to = f.channel(colour_channels[c]);
+            const std::vector<float>* const background = frame_.find(std::string("background.") + colour_channels[c]);
             for (std::size_t i = 0; i < to.size(); ++i) {
                 to[i] = std::max(all[c * plane() + at(i)] * albedo(c, i) * opacity(i), 0.0f);
                 if (background) to[i] += (1 - opacity(i)) * finite((*background)[i]);
@@ -101,12 +98,12 @@ private:
 
         const float shares[] = {0.2126f, 0.7152f, 0.0722f};
         const std::vector<float>* variance[3];
-        for (int c = 0; c < 3; ++c) variance[c] = frame_.find(std::string("variance.") + colours[c]);
+        for (int c = 0; c < 3; ++c) variance[c] = frame_.find(std::string("variance.") + colour_channels[c]);
         has_variance = variance[0] && variance[1] && variance[2];
         planes.assign(4 * plane() + 16, 0);
         float* const luminance_variance = &planes[3 * plane()];
         for (int c = 0; c < 3; ++c) {
-            const BeautyWithoutBackground beauty(frame_, colours[c]);
+            const BeautyWithoutBackground beauty(frame_, colour_channels[c]);
             float* const to = &planes[static_cast<std::size_t>(c) * plane()];
             for (std::size_t i = 0; i < frame_.pixels(); ++i) {
                 const float divisor = albedo(c, i) * std::max(opacity(i), opacity_floor), share = shares[c] / divisor;

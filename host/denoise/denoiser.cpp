@@ -13,8 +13,6 @@ namespace clvr {
 
 namespace {
 
-constexpr const char* colours[] = {"R", "G", "B"};
-
 /// Tiles begin at multiples of `align`, so that their grid cells are the picture's, and read `halo` pixels around what they give.
 struct Tiling {
     int align = 1, halo = 0;
@@ -57,11 +55,11 @@ Region grown(const Region& r, int by, int width, int height) {
 /// are not known (0).
 float noise_per_variance(int samples) { return samples == 0 ? 1 : static_cast<float>(0.6 + 3.2 / samples); }
 
-const std::vector<std::string> beauty{"R", "G", "B", "A"}, noisy_beauty{"noisy.R", "noisy.G", "noisy.B", "noisy.A"},
-    variances{"variance.R", "variance.G", "variance.B"};
+const std::vector<std::string> beauty_planes{"R", "G", "B", "A"}, noisy_planes{"noisy.R", "noisy.G", "noisy.B", "noisy.A"},
+    variance_planes{"variance.R", "variance.G", "variance.B"};
 
 bool has_variances(const Frame& frame) {
-    return std::all_of(variances.begin(), variances.end(), [&](const std::string& v) { return frame.has(v); });
+    return std::all_of(variance_planes.begin(), variance_planes.end(), [&](const std::string& v) { return frame.has(v); });
 }
 
 } // namespace
@@ -140,7 +138,7 @@ struct Denoiser::State {
         Film& film = window.film;
         const std::size_t plane_bytes = film.pixels() * sizeof(float);
         const bool with_variance = film.samples != 1 && film.find("variance.R") >= 0, with_opacity = alpha && film.find("opacity.A") >= 0;
-        const int noisy = film.require(noisy_beauty), out = film.require(beauty);
+        const int noisy = film.require(noisy_planes), out = film.require(beauty_planes);
         copy(device, film.planes(), film.planes(), 4 * plane_bytes, out * plane_bytes, noisy * plane_bytes);
         // Alpha of the paths is as noisy as their colour.
         if (with_opacity)
@@ -224,9 +222,9 @@ struct Denoiser::State {
             film.samples = static_cast<int>(std::clamp(std::atof(spp->second.c_str()), 0.0, 1e9));
         std::vector<float> planes;
         repaired += plan.gather(frame, nullptr, region, known, planes);
-        std::vector<std::string> names = beauty, further = plan.planes();
-        names.insert(names.end(), noisy_beauty.begin(), noisy_beauty.end());
-        if (has_variances(frame)) names.insert(names.end(), variances.begin(), variances.end());
+        std::vector<std::string> names = beauty_planes, further = plan.planes();
+        names.insert(names.end(), noisy_planes.begin(), noisy_planes.end());
+        if (has_variances(frame)) names.insert(names.end(), variance_planes.begin(), variance_planes.end());
         further.erase(further.begin(), further.begin() + 3); // R G B lie in beauty
         names.insert(names.end(), further.begin(), further.end());
         if (frame.has("opacity.A") && frame.has("A") && std::find(names.begin(), names.end(), "opacity.A") == names.end())
@@ -312,12 +310,12 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     s.repaired = 0;
     Frame done = frame;
     const int levels = static_cast<int>(s.model.levels.size());
-    for (const char* c : colours) done.channels[std::string("noisy.") + c] = frame.at(c);
+    for (const char* c : colour_channels) done.channels[std::string("noisy.") + c] = frame.at(c);
     const bool alpha = frame.has("opacity.A") && frame.has("A");
     if (alpha) done.channels["noisy.A"] = frame.at("A");
     std::vector<std::vector<float>*> shown, outputs; // one per plane of NeuralGrid::result() after the third, of outputs()
     for (int l = 1; view.levels && l <= levels; ++l)
-        for (const char* c : colours) shown.push_back(&done.channel(fmt::format("level{}.{}", l, c)));
+        for (const char* c : colour_channels) shown.push_back(&done.channel(fmt::format("level{}.{}", l, c)));
     for (int l = 1; l <= levels; ++l) outputs.push_back(view.guides ? &done.channel(fmt::format("guide.{}", l)) : nullptr);
     for (int l = 1; l < levels; ++l) outputs.push_back(view.weights ? &done.channel(fmt::format("weight.{}", l)) : nullptr);
 
@@ -343,7 +341,7 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
             if (inner.pixels() != frame.pixels()) s.grid.reset(); // it may have taken the room of this part
             Window window = s.upload(frame, inner, known);
             s.run(window, frame.width, frame.height, exposure, alpha, window.film.planes().bytes(), view.levels, on_tile);
-            for (const std::string& name : beauty) {
+            for (const std::string& name : beauty_planes) {
                 if (name == "A" && !alpha) continue;
                 const std::vector<float> plane = window.film.download(name);
                 std::vector<float>& to = done.channel(name);
@@ -356,7 +354,7 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
         }
 
     const std::vector<float>* const opacity = done.has("A") ? done.find("A") : frame.opacity();
-    for (const char* c : colours) {
+    for (const char* c : colour_channels) {
         const std::vector<float>* const background = frame.find(std::string("background.") + c);
         if (!background || !opacity) continue;
         std::vector<float>& to = done.channel(c);

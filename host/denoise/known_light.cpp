@@ -8,7 +8,6 @@ namespace clvr {
 
 namespace {
 
-constexpr const char* colours[] = {"R", "G", "B"};
 constexpr double least_opacity = 1.0 / 256;
 constexpr double faith = 0.02; ///< weight of the prior (shares of 1, 1 and 0) relative to the pixels
 constexpr double spread = 0.2; ///< expected deviation of a cell's shares from the whole frame's
@@ -33,8 +32,6 @@ std::array<double, 3> solve(std::array<std::array<double, 3>, 3> a, std::array<d
     }
     return b;
 }
-
-float finite(float v) { return std::isfinite(v) ? v : 0; }
 
 /// Weighted least squares of a value by three others, summed up.
 struct Sums {
@@ -98,7 +95,7 @@ const std::vector<std::string>& known_light_channels() {
 KnownLight::KnownLight(const Frame& frame, int cell) : opacity_(frame.at("opacity.A").data()), width_(frame.width), cell_(cell) {
     if (cell > 0) across_ = (frame.width + cell - 1) / cell, down_ = (frame.height + cell - 1) / cell;
     for (std::size_t c = 0; c < 3; ++c) {
-        const std::string name = colours[c];
+        const std::string name = colour_channels[c];
         colours_[c] = {
             frame.at("light.key." + name).data(), frame.at("light.sky." + name).data(), frame.at("albedo." + name).data(), {}, {}};
         fit(colours_[c], frame, name);

@@ -3,10 +3,14 @@
 #include "host/frame/frame.hpp"
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
 namespace clvr {
+
+/// 0 for what is not finite.
+inline float finite(float v) { return std::isfinite(v) ? v : 0; }
 
 /// The channels that KnownLight reads: light.key.*, light.sky.*, albedo.*, and opacity.A.
 const std::vector<std::string>& known_light_channels();

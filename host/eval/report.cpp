@@ -16,7 +16,6 @@ namespace clvr {
 
 namespace {
 
-constexpr const char* colours[] = {"R", "G", "B"};
 constexpr int crop_size = 96; // [pixels], shown threefold
 
 constexpr const char* style = R"(
@@ -41,7 +40,7 @@ std::string base64(const std::vector<unsigned char>& bytes) {
 Frame cut(const Frame& frame, int x, int y, int width, int height) {
     Frame part;
     part.width = std::min(width, frame.width), part.height = std::min(height, frame.height);
-    for (const char* c : colours) {
+    for (const char* c : colour_channels) {
         std::vector<float>& to = part.channel(c);
         for (int j = 0; j < part.height; ++j) {
             const auto row = frame.at(c).begin() + static_cast<std::ptrdiff_t>(y + j) * frame.width + x;

@@ -22,8 +22,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-void write_text(const std::string& text, const std::string& path) { write_atomically(path, text.data(), text.size()); }
-
 /// The rows asked for, in the order of ablation_rows.
 std::vector<AblationRow> chosen(const std::vector<std::string>& names) {
     std::vector<AblationRow> rows;
@@ -104,7 +102,7 @@ void check_patches(const AblationSettings& s) {
     }
 }
 
-void begin_folder(const std::string& settings, const std::string& folder) {
+void begin_ablation_folder(const std::string& settings, const std::string& folder) {
     begin_settled_folder(folder, "settings.json", settings,
                          "holds an ablation of other pairs or settings (its settings.json has them); name another folder");
 }
@@ -143,7 +141,7 @@ std::vector<AblationScore> scores_of(const Candidate& candidate, const std::vect
             const Evaluation e = evaluate({candidate}, test.folder, test.frames[k], [&](double) { seen(); });
             wanted.push_back({test.name, spp[k], e.scores.front().mean});
             known.push_back(wanted.back());
-            write_text(json_text(ordered_json{{"scores", json_of(known)}}), path);
+            write_atomically(path, json_text(ordered_json{{"scores", json_of(known)}}));
         }
     return wanted;
 }
@@ -214,7 +212,7 @@ std::vector<AblationResult> run_ablation(const AblationSettings& s, const std::s
     const std::string settings = shared_settings(s);
     const std::vector<Test> tests = tests_of(s);
     check_patches(s);
-    begin_folder(settings, folder);
+    begin_ablation_folder(settings, folder);
     const auto path = [&](const std::string& name) { return (fs::path(folder) / name).string(); };
     StageTimes times(path("stages.json"));
 
@@ -257,15 +255,15 @@ std::vector<AblationResult> run_ablation(const AblationSettings& s, const std::s
     ordered_json all{{"clvr.format", "ablation-results/1"}, {"device", device.facts().name}, {"version", provenance.version}};
     if (!provenance.commit.empty()) all["commit"] = provenance.commit;
     all.update({{"command", provenance.command}, {"settings", ordered_json::parse(settings)}, {"rows", json_rows}});
-    write_text(json_text(all), path("ablation.json"));
+    write_atomically(path("ablation.json"), json_text(all));
     const TrainerConfig& t = s.training;
-    write_text(
+    write_atomically(
+        path("ablation.md"),
         fmt::format(
             "# Feature ablation\n\n{} steps of {} patches of {}x{} each, on {} folders of pairs. Rows 1 to 5 add up; the others change "
             "the full set.\n\n{}\n`{}`, clvr {}{}, {}\n",
             t.steps, t.step.batch, t.step.patch, t.step.patch, s.train.size(), markdown_tables(results), provenance.command,
-            provenance.version, provenance.commit.empty() ? "" : " at " + provenance.commit, device.facts().name),
-        path("ablation.md"));
+            provenance.version, provenance.commit.empty() ? "" : " at " + provenance.commit, device.facts().name));
     return results;
 }
 

@@ -25,10 +25,8 @@ namespace {
 
 [[noreturn]] void interrupted_here() { throw Error(ErrorKind::interrupted, "interrupted; the same command goes on from here"); }
 
-void write_text(const std::string& text, const std::string& path) { write_atomically(path, text.data(), text.size()); }
-
 /// Makes the folder, or checks that it is this experiment's.
-void begin_folder(const std::string& settings, const std::string& folder) {
+void begin_experiment_folder(const std::string& settings, const std::string& folder) {
     begin_settled_folder(folder, "experiment.json", settings,
                          "holds an experiment with other settings (its experiment.json has them); name another folder, or remove this one");
 }
@@ -133,18 +131,18 @@ private:
         for (const Measurement& m : measurements)
             frames.push_back({{"spp", m.spp}, {"baselines", to_json(m.baselines)}, {"mean", to_json(m.evaluation).at("mean")}});
         results["frames"] = frames;
-        write_text(json_text(results), path("results.json"));
+        write_atomically(path("results.json"), json_text(results));
 
         const std::string volume =
             s_.computed.empty() ? "a file" : fmt::format("computed, {} {}", fmt::join(s_.size.dims, "x"), voxel_type_name(s_.size.type));
-        write_text(
+        write_atomically(
+            path("results.md"),
             fmt::format("# {}, scale {}\n\nVolume: {}. {} training and {} test views of {}x{} pixels, references of {} and {} samples per "
                         "pixel. {} steps of {} patches of {}x{}. Means over the test views.\n\n{}\n`{}`, clvr {}{}, {}, {:.0f} s\n",
                         s_.name, s_.scale, volume, s_.train.views, s_.test.views, s_.scene.width, s_.scene.height, s_.train.reference_spp,
                         s_.test.reference_spp, training_steps(s_), s_.training.step.batch, s_.training.step.patch, s_.training.step.patch,
                         table, provenance_.command, provenance_.version, provenance_.commit.empty() ? "" : " at " + provenance_.commit,
-                        fmt::join(names, " + "), total_seconds()),
-            path("results.md"));
+                        fmt::join(names, " + "), total_seconds()));
     }
 
     double total_seconds() const {
@@ -164,7 +162,7 @@ private:
                    "classical denoisers: the best of 3x3 settings on training views, at each number of samples per pixel",
                    "PSNR and SSIM of clip(RGB, 0, 1)^(1/2.2) over black; RMSE, SMAPE and relMSE linear"};
         r.trainings = {{trained_candidate, read_text(training_csv(path("model.safetensors")))}};
-        write_text(html_report(report_parts(devices_.front(), model, measurements), path("test"), r), path("report.html"));
+        write_atomically(path("report.html"), html_report(report_parts(devices_.front(), model, measurements), path("test"), r));
     }
 };
 
@@ -193,7 +191,7 @@ ExperimentOutcome run_experiment(const ExperimentSettings& settings, const std::
     if (settings.computed.empty() && !fs::exists(split_dataset_path(volume_path(settings, folder)).file) &&
         !fs::exists(fs::path(folder) / "experiment.json"))
         throw Error(ErrorKind::input, "there is no such file or folder", volume_path(settings, folder));
-    begin_folder(to_json(settings), folder);
+    begin_experiment_folder(to_json(settings), folder);
     return Run(settings, folder, devices, provenance, control)();
 }
 

@@ -1,5 +1,6 @@
 #include "host/experiment/experiment_estimate.hpp"
 #include "host/eval/evaluation.hpp"
+#include "host/experiment/measurement.hpp"
 #include "host/io/scene/scene_inputs.hpp"
 #include "host/io/volume/volume_file.hpp"
 #include "runtime/error.hpp"
@@ -11,8 +12,8 @@ namespace clvr {
 
 namespace {
 
-constexpr int probe_views = 3, probe_spp = 8;        // of the training views; samples beyond the first
-constexpr int settings_tried = 18, tuning_views = 8; ///< measurement.cpp: 3x3 settings of two denoisers, views to choose them on
+constexpr int probe_views = 3, probe_spp = 8; // of the training views; samples beyond the first
+constexpr int settings_tried = 18;            ///< measurement.cpp: 3x3 settings of two denoisers
 
 /// Seconds that f takes.
 template <class F>

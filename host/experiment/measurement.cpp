@@ -13,8 +13,6 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr int tuning_views = 8; // the best of 3x3 settings does not change with more
-
 void write_measurements(const std::vector<Measurement>& measurements, const std::string& path) {
     ordered_json frames = ordered_json::array();
     for (const Measurement& m : measurements) {
@@ -23,7 +21,7 @@ void write_measurements(const std::vector<Measurement>& measurements, const std:
         frames.push_back(frame);
     }
     const std::string text = json_text(ordered_json{{"clvr.format", "evaluation/1"}, {"frames", frames}});
-    write_atomically(path, text.data(), text.size());
+    write_atomically(path, text);
 }
 
 } // namespace

@@ -19,8 +19,11 @@ struct Measurement {
 /// The name of the trained network among the candidates.
 constexpr const char* trained_candidate = "clvr";
 
-/// Measures the frames that the file `path` lacks and writes it after each; the classical denoisers are tuned on at most 8 views of the
-/// training pairs. Throws Error{interrupted}.
+/// How many views the settings of the classical denoisers are chosen on: the best of 3x3 does not change with more.
+constexpr int tuning_views = 8;
+
+/// Measures the frames that the file `path` lacks and writes it after each; the classical denoisers are tuned on at most tuning_views of
+/// the training pairs. Throws Error{interrupted}.
 std::vector<Measurement> measure(const Device& device, const Model& model, const std::string& train_folder, const std::string& test_folder,
                                  const std::vector<int>& spp, const std::string& path, const std::atomic<bool>& interrupted,
                                  const std::function<void(double done, const std::string& note)>& progress);

@@ -14,7 +14,7 @@ void begin_settled_folder(const std::string& folder, const std::string& name, co
     fs::create_directories(folder, failed);
     if (failed) throw Error(ErrorKind::input, fmt::format("cannot be made: {}", failed.message()), folder);
     const std::string path = (fs::path(folder) / name).string();
-    if (!fs::exists(path)) return write_atomically(path, text.data(), text.size());
+    if (!fs::exists(path)) return write_atomically(path, text);
     if (read_text(path) != text) throw Error(ErrorKind::input, conflict, folder);
 }
 

@@ -50,7 +50,7 @@ void StageTimes::write() const {
     ordered_json seconds = ordered_json::object();
     for (const auto& [stage, s] : seconds_) seconds[stage] = s;
     const std::string text = ordered_json{{"seconds", seconds}, {"finished", finished_}}.dump(1) + "\n";
-    write_atomically(path_, text.data(), text.size());
+    write_atomically(path_, text);
 }
 
 StageTimes::Adding::~Adding() {

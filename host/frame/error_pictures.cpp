@@ -9,8 +9,6 @@ namespace clvr {
 
 namespace {
 
-constexpr const char* colours[] = {"R", "G", "B"};
-
 /// sRGB stations of matplotlib's "magma" (S. van der Walt, N. Smith; CC0), linear between them.
 constexpr double stations[][3] = {{0, 0, 4},      {28, 16, 68},   {79, 18, 123},   {129, 37, 129}, {181, 54, 122},
                                   {229, 80, 100}, {251, 135, 97}, {254, 194, 135}, {252, 253, 191}};
@@ -29,7 +27,7 @@ Frame flip_picture(const Frame& image, const Frame& reference) {
     const std::vector<double> map = flip_map(image, reference);
     Frame picture = image.blank();
     for (int c = 0; c < 3; ++c) {
-        std::vector<float>& plane = picture.channel(colours[c]);
+        std::vector<float>& plane = picture.channel(colour_channels[c]);
         for (std::size_t i = 0; i < map.size(); ++i) plane[i] = static_cast<float>(magma(map[i], c));
     }
     return picture;
@@ -38,7 +36,7 @@ Frame flip_picture(const Frame& image, const Frame& reference) {
 Frame difference_picture(const Frame& image, const Frame& reference) {
     const auto display = [](double v) { return std::pow(std::clamp(v, 0.0, 1.0), 1 / 2.2); };
     Frame picture = image.blank();
-    for (const char* c : colours) {
+    for (const char* c : colour_channels) {
         std::vector<float>& plane = picture.channel(c);
         const std::vector<float>&a = image.at(c), &b = reference.at(c);
         for (std::size_t i = 0; i < plane.size(); ++i)

@@ -7,6 +7,9 @@
 
 namespace clvr {
 
+/// The channels of a picture's colour.
+inline constexpr const char* colour_channels[] = {"R", "G", "B"};
+
 /// Part of a picture [pixels].
 struct Region {
     int x = 0, y = 0, width = 0, height = 0;

@@ -13,8 +13,6 @@ namespace clvr {
 
 namespace {
 
-constexpr const char* colours[] = {"R", "G", "B"};
-
 double display(double v) { return std::pow(std::clamp(v, 0.0, 1.0), 1 / 2.2); }
 
 void check(const Frame& image, const Frame& reference) {
@@ -26,7 +24,7 @@ void check(const Frame& image, const Frame& reference) {
                     fmt::format("the pixels begin at ({}, {}) against ({}, {}) of the whole picture: cut both to the same part", image.x,
                                 image.y, reference.x, reference.y));
     for (const Frame* f : {&image, &reference})
-        for (const char* c : colours) {
+        for (const char* c : colour_channels) {
             if (!f->has(c))
                 throw Error(ErrorKind::input, fmt::format("{} lacks channel {}", f == &image ? "the picture" : "the reference", c));
             for (const float v : f->at(c))
@@ -79,7 +77,7 @@ std::pair<double, double> ssim_of(const Frame& image, const Frame& reference) {
     const std::vector<float>* const opacity = reference.opacity();
     double all = 0, opaque = 0;
     std::size_t count = 0, opaque_count = 0;
-    for (const char* c : colours) {
+    for (const char* c : colour_channels) {
         const Plane a = displayed(image.at(c)), b = displayed(reference.at(c));
         const Plane ma = window_means(a, width, height), mb = window_means(b, width, height),
                     aa = window_means(product(a, a), width, height), bb = window_means(product(b, b), width, height),
@@ -102,7 +100,7 @@ std::pair<double, double> ssim_of(const Frame& image, const Frame& reference) {
 double psnr(const Frame& image, const Frame& reference) {
     check(image, reference);
     double sum = 0;
-    for (const char* c : colours) {
+    for (const char* c : colour_channels) {
         const std::vector<float>&a = image.at(c), &b = reference.at(c);
         for (std::size_t i = 0; i < a.size(); ++i) {
             const double d = display(a[i]) - display(b[i]);
@@ -118,7 +116,7 @@ Metrics compare_frames(const Frame& image, const Frame& reference) {
     m.psnr = psnr(image, reference);
     std::tie(m.ssim, m.ssim_opaque) = ssim_of(image, reference);
     const double n = 3.0 * static_cast<double>(image.pixels());
-    for (const char* c : colours) {
+    for (const char* c : colour_channels) {
         const std::vector<float>&of_image = image.at(c), &of_reference = reference.at(c);
         for (std::size_t i = 0; i < of_image.size(); ++i) {
             const double a = of_image[i], b = of_reference[i], d = a - b;

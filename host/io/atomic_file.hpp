@@ -18,6 +18,7 @@ void check_writable(const std::string& path);
 /// and the reason.
 void write_atomically(const std::string& path, const std::function<void(const std::string& temporary_path)>& write);
 void write_atomically(const std::string& path, const void* bytes, std::size_t size);
+inline void write_atomically(const std::string& path, const std::string& text) { write_atomically(path, text.data(), text.size()); }
 
 /// Throws Error{input} with the reason unless `path` is a file that can be opened.
 void check_readable(const std::string& path);

@@ -22,7 +22,7 @@ constexpr std::uint64_t deflate_ratio = 1032; // the greatest that the format al
     throw Error(ErrorKind::input, fmt::format("cannot be read: {}", std::strerror(errno)), path);
 }
 
-std::unique_ptr<std::FILE, int (*)(std::FILE*)> open(const std::string& path) {
+std::unique_ptr<std::FILE, int (*)(std::FILE*)> open_file(const std::string& path) {
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
     if (!file) unreadable(path);
     return file;
@@ -41,7 +41,7 @@ struct ByteStream::Inflater {
     ~Inflater() { inflateEnd(&z); }
 };
 
-ByteStream::ByteStream(const std::string& path, Coding coding, std::uint64_t offset) : path_(path), file_(open(path)) {
+ByteStream::ByteStream(const std::string& path, Coding coding, std::uint64_t offset) : path_(path), file_(open_file(path)) {
     will_read(path);
     const std::uint64_t size = std::filesystem::file_size(path);
     capacity_ = size > offset ? size - offset : 0;
@@ -132,7 +132,7 @@ ByteStream open_inside(const std::string& path) {
 }
 
 std::string read_head(const std::string& path, std::size_t limit) {
-    const auto file = open(path); // no ByteStream, as that declares an input: looking at a file's head is no use of it yet
+    const auto file = open_file(path); // no ByteStream, as that declares an input: looking at a file's head is no use of it yet
     std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(limit, std::filesystem::file_size(path))), '\0');
     head.resize(std::fread(head.data(), 1, head.size(), file.get()));
     if (std::ferror(file.get())) unreadable(path);

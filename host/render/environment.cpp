@@ -1,4 +1,5 @@
 #include "host/render/environment.hpp"
+#include "host/volume/vec.hpp"
 
 #include <algorithm>
 
@@ -14,7 +15,6 @@ double cos_half_turns(double x) {
 }
 
 EnvironmentTables environment_tables(int width, int height, const std::vector<float>& rgb, double level) {
-    constexpr double pi = 3.14159265358979323846;
     EnvironmentTables e;
     e.width = width, e.height = height;
     e.texel.resize(static_cast<std::size_t>(width) * height);

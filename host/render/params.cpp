@@ -1,4 +1,5 @@
 #include "host/render/params.hpp"
+#include "host/volume/vec.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -8,8 +9,6 @@
 namespace clvr {
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846, radian = pi / 180;
 
 shared::float4 rounded(const Double3& v, double w = 0) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(w)};

@@ -9,11 +9,10 @@ namespace clvr {
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr int most_suns = 4;
 constexpr double sun_cosine = 0.99756405, least_share = 0.05, least_contrast = 20; // 4 degrees
 
-shared::float4 rounded(const Double3& v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), 0}; }
+shared::float4 float4_of(const Double3& v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), 0}; }
 
 /// Cosine and sine of an angle in turns.
 std::array<double, 2> circle(double turns) {
@@ -105,8 +104,8 @@ bool take_sun(Texels& texels, double mean_luminance, std::vector<shared::KeyLigh
     if (!(luminous >= least_share * 4 * pi * mean_luminance)) return false;
     texels.take(spot);
     shared::KeyLight sun{};
-    sun.direction = rounded(unit(towards));
-    sun.irradiance = rounded(power);
+    sun.direction = float4_of(unit(towards));
+    sun.irradiance = float4_of(power);
     suns.push_back(sun);
     return true;
 }
@@ -137,8 +136,8 @@ SkySplit split_sky(const shared::RenderParams& params, const EnvironmentTables& 
             radiance[nearest] = radiance[nearest] + texels.power(t);
         });
     }
-    for (const Double3& d : directions) s.directions.push_back(rounded(d));
-    for (const Double3& l : radiance) s.radiance.push_back(rounded(l));
+    for (const Double3& d : directions) s.directions.push_back(float4_of(d));
+    for (const Double3& l : radiance) s.radiance.push_back(float4_of(l));
     return s;
 }
 

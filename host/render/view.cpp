@@ -7,7 +7,6 @@ namespace clvr {
 
 namespace {
 
-constexpr double radian = 3.14159265358979323846 / 180;
 constexpr double margin = 0.94; // share of the picture that a framed volume fills
 
 Double3 from_direction(double azimuth, double elevation) {

@@ -1,4 +1,5 @@
 #include "host/render/view_set.hpp"
+#include "host/volume/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ struct Uniform {
 } // namespace
 
 std::vector<ViewPoint> view_set(int count, std::uint64_t seed, double zoom_low, double zoom_high) {
-    constexpr double pi = 3.14159265358979323846, golden_turn = 0.61803398874989485, steepest = 80;
+    constexpr double golden_turn = 0.61803398874989485, steepest = 80;
     const double spacing = std::sqrt(4 * pi / count); // [rad] between neighbours
     Uniform uniform{seed};
     const double offset = uniform();

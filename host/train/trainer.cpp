@@ -134,7 +134,7 @@ struct Trainer::State {
         for (std::size_t e = 0; e < checkpoint.records.size(); ++e)
             csv += fmt::format("{},{},{}\n", e + 1, checkpoint.records[e].loss, checkpoint.records[e].validation);
         const std::string stem = stem_of(output);
-        write_atomically(training_csv(output), csv.data(), csv.size());
+        write_atomically(training_csv(output), csv);
         const auto noted = [&](Model m) {
             m.notes["clvr.training"] = checkpoint.configuration;
             return m;

@@ -1,6 +1,7 @@
 #include "host/volume/srgb.hpp"
 #include "host/volume/transfer_function.hpp"
 #include "host/volume/value_statistics.hpp"
+#include "host/volume/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +16,6 @@ using Point = TransferFunction::Point;
 /// A piecewise linear curve over 0..1: opacity, or a colour in sRGB.
 template <class T>
 using Stops = std::vector<std::pair<double, T>>;
-
-double lerp(double a, double b, double t) { return std::fma(t, b - a, a); }
-Color lerp(const Color& a, const Color& b, double t) { return {lerp(a[0], b[0], t), lerp(a[1], b[1], t), lerp(a[2], b[2], t)}; }
 
 template <class T>
 T at(const Stops<T>& stops, double t) {

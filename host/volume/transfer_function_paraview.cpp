@@ -31,9 +31,6 @@ double power(double x, double e) {
     return result;
 }
 
-double lerp(double a, double b, double t) { return std::fma(t, b - a, a); }
-Double3 lerp(const Double3& a, const Double3& b, double t) { return {lerp(a[0], b[0], t), lerp(a[1], b[1], t), lerp(a[2], b[2], t)}; }
-
 // All colour spaces end in linear RGB.
 Double3 linear_from_srgb(const Double3& c) { return {srgb_decode(c[0]), srgb_decode(c[1]), srgb_decode(c[2])}; }
 

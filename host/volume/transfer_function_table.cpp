@@ -1,4 +1,5 @@
 #include "host/volume/transfer_function.hpp"
+#include "host/volume/vec.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -9,8 +10,6 @@
 namespace clvr {
 
 namespace {
-
-double lerp(double a, double b, double t) { return std::fma(t, b - a, a); }
 
 /// The points over stored values, ascending.
 std::vector<TransferFunction::Point> over_stored_values(const TransferFunction& tf, const Voxels& v, double low, double high) {

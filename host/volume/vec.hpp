@@ -8,6 +8,8 @@ namespace clvr {
 using Double3 = std::array<double, 3>;
 using Int3 = std::array<int, 3>;
 
+inline constexpr double pi = 3.14159265358979323846, radian = pi / 180; ///< radian: of a degree
+
 inline Double3 operator+(const Double3& a, const Double3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Double3 operator-(const Double3& a, const Double3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Double3 operator*(const Double3& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
@@ -16,6 +18,10 @@ inline Double3 cross(const Double3& a, const Double3& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 inline double norm(const Double3& a) { return std::sqrt(inner(a, a)); }
+inline double lerp(double a, double b, double t) { return std::fma(t, b - a, a); }
+inline Double3 lerp(const Double3& a, const Double3& b, double t) {
+    return {lerp(a[0], b[0], t), lerp(a[1], b[1], t), lerp(a[2], b[2], t)};
+}
 inline Double3 unit(const Double3& a) { return a * (1.0 / norm(a)); }
 
 /// Row-major 3x3 matrix.

@@ -32,9 +32,9 @@ private:
 };
 
 /// The program whose commands do nothing.
-class Program {
+class ParsedProgram {
 public:
-    Program() { add_program(app); }
+    ParsedProgram() { add_program(app); }
     void for_each(const std::function<void(CLI::App&)>& visit) { visit_below(app, visit); }
     /// Names of the command from the program's down: "dataset", "make".
     static Words path(const CLI::App& command) {
@@ -78,7 +78,7 @@ Words joined(std::initializer_list<Words> parts) {
 }
 
 TEST(CommandLine, NoOptionTakesMoreThanOneWord) {
-    Program program;
+    ParsedProgram program;
     int options = 0;
     const auto check = [&](const CLI::App& command) {
         for (const CLI::Option* o : command.get_options()) {
@@ -94,7 +94,7 @@ TEST(CommandLine, NoOptionTakesMoreThanOneWord) {
 }
 
 TEST(CommandLine, OptionsStandBeforeAndAfterArguments) {
-    Program program;
+    ParsedProgram program;
     program.for_each([&](CLI::App& command) {
         if (!command.get_subcommands([](CLI::App*) { return true; }).empty()) return;
         Words arguments;
@@ -105,7 +105,7 @@ TEST(CommandLine, OptionsStandBeforeAndAfterArguments) {
             for (int k = 0; k < (o->get_items_expected_max() > 1 ? 3 : 1); ++k)
                 arguments.push_back("argument" + std::to_string(arguments.size()));
         }
-        const Words path = Program::path(command);
+        const Words path = ParsedProgram::path(command);
         for (CLI::Option* o : command.get_options()) {
             if (o->get_positional() || o == command.get_help_ptr()) continue;
             Words given{"--" + o->get_lnames().front()};
@@ -129,7 +129,7 @@ TEST(CommandLine, OptionsStandBeforeAndAfterArguments) {
 }
 
 TEST(CommandLine, ListsByCommasAndRepetition) {
-    Program program;
+    ParsedProgram program;
     const auto results = [&](const Words& words, const std::string& option) {
         program.parse(words);
         return program.app.get_subcommand(words.front())->get_option(option)->results();
@@ -157,7 +157,7 @@ TEST(CommandLine, NearestNames) {
 }
 
 TEST(CommandLine, AVolumeAloneIsRendered) {
-    Program program;
+    ParsedProgram program;
     TemporaryFolder folder;
     folder.write("scan.nii.gz", "x");
     const std::string scan = (folder.path() / "scan.nii.gz").string(), absent = (folder.path() / "absent.nii").string();
@@ -206,7 +206,7 @@ TEST(CommandLine, NamesOfPicturesBesideVolumes) {
 }
 
 TEST(Help, OutputLookCameraThenTheRest) {
-    Program program;
+    ParsedProgram program;
     const std::string help = help_text(*program.app.get_subcommand("render"));
     std::size_t before = 0;
     for (const char* part :
@@ -221,7 +221,7 @@ TEST(Help, OutputLookCameraThenTheRest) {
 }
 
 TEST(Help, EveryCommandSaysWhatItDoesInLinesThatFit) {
-    Program program;
+    ParsedProgram program;
     const auto check = [&](const CLI::App& command) {
         const std::string help = help_text(command), name = full_name(command);
         EXPECT_NE(command.get_description(), "") << name;

@@ -12,14 +12,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::vector<double> values_of(const Voxels& v) {
-    std::vector<double> values;
-    with_voxel_type(v.type, [&](auto zero) {
-        using T = decltype(zero);
-        values.assign(v.data<T>(), v.data<T>() + v.count());
-    });
-    return values;
-}
 /// 0, 1, 2, ...
 std::vector<std::int16_t> counted(std::size_t n) {
     std::vector<std::int16_t> values(n);

@@ -13,7 +13,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 template <class T>
-std::vector<T> values_of(const Sample& s) {
+std::vector<T> samples_of(const Sample& s) {
     std::vector<T> values;
     for (const auto v : s.voxels) values.push_back(static_cast<T>(v));
     return values;
@@ -24,7 +24,7 @@ Voxels read_type(const Folder& folder, int datatype, bool big) {
     const Sample s;
     NiftiFields f;
     f.datatype = datatype, f.sample_bytes = sizeof(T), f.big = big;
-    return read_volume(write(folder / "a.nii", nifti(s, f, bytes_of(values_of<T>(s), big))));
+    return read_volume(write(folder / "a.nii", nifti(s, f, bytes_of(samples_of<T>(s), big))));
 }
 
 TEST(VolumeNifti, KeepsSmallTypesAndWidensTheRest) {
@@ -194,7 +194,7 @@ TEST(VolumeNifti, CountsNanAndInfiniteVoxelsAndShowsThemAsTheMinimum) {
     const Sample s;
     NiftiFields f;
     f.datatype = 16, f.sample_bytes = 4;
-    std::vector<float> values = values_of<float>(s);
+    std::vector<float> values = samples_of<float>(s);
     values[3] = -5000;
     values[7] = NAN;
     values[8] = INFINITY;
@@ -219,7 +219,7 @@ TEST(VolumeNifti, DoublesBeyondFloatCountAsInfinite) {
     const Sample s;
     NiftiFields f;
     f.datatype = 64, f.sample_bytes = 8;
-    std::vector<double> values = values_of<double>(s);
+    std::vector<double> values = samples_of<double>(s);
     values[5] = 1e300;
     EXPECT_EQ(read_volume(write(folder / "a.nii", nifti(s, f, bytes_of(values)))).repaired, 1u);
 }

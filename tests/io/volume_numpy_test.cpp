@@ -12,15 +12,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-std::vector<double> values_of(const Voxels& v) {
-    std::vector<double> values;
-    with_voxel_type(v.type, [&](auto zero) {
-        using T = decltype(zero);
-        values.assign(v.data<T>(), v.data<T>() + v.count());
-    });
-    return values;
-}
-
 /// An array of shape (1, 1, 2) of the given bytes.
 std::vector<double> two(const Folder& folder, const std::string& descr, const std::string& bytes) {
     return values_of(read_volume(write(folder / "a.npy", numpy_header("'" + descr + "'", "(1, 1, 2)") + bytes)));

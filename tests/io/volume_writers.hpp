@@ -1,6 +1,7 @@
 // Small volume files of every format, written byte by byte from the formats' own documents.
 #pragma once
 #include "host/volume/geometry.hpp"
+#include "host/volume/voxels.hpp"
 #include "runtime/error.hpp"
 #include "tests/io/folder.hpp"
 
@@ -42,6 +43,15 @@ std::string bytes_of(const std::vector<T>& values, bool big = false) {
 template <class T>
 std::string number(T value, bool big = false) {
     return bytes_of(std::vector<T>{value}, big);
+}
+
+inline std::vector<double> values_of(const Voxels& v) {
+    std::vector<double> values;
+    with_voxel_type(v.type, [&](auto zero) {
+        using T = decltype(zero);
+        values.assign(v.data<T>(), v.data<T>() + v.count());
+    });
+    return values;
 }
 
 /// gzip (as a .gz file) or a zlib stream.

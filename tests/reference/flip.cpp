@@ -1,4 +1,5 @@
 #include "tests/reference/flip.hpp"
+#include "host/volume/vec.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,7 @@ namespace {
 
 using V = std::array<double, 3>;
 using Image = std::vector<V>;
-const double pi = std::acos(-1.0), ppd = 3840 * pi / 180;
+const double ppd = 3840 * pi / 180;
 const V white{0.95047, 1.0, 1.08883}; // of R = G = B = 1
 
 V xyz(const V& c) {

@@ -3,7 +3,7 @@
 namespace clvr::reference {
 
 namespace {
-constexpr double pi = 3.14159265358979323846, alpha2 = 0.3 * 0.3, reflectance = 0.04;
+constexpr double alpha2 = 0.3 * 0.3, reflectance = 0.04;
 
 double masking(double cosine) { return 2 / (1 + std::sqrt(1 + alpha2 * (1 - cosine * cosine) / (cosine * cosine))); }
 } // namespace

@@ -30,7 +30,6 @@ double single_scatter(const UniformBox& box, const Double3& origin, const Double
 /// Light of radiance(towards) from the whole sphere, in directions that the phase function makes equally likely for a ray along `dir`.
 template <class F>
 std::vector<Scattered> scattered_everywhere(double g, const Double3& dir, F&& radiance, int rows = 96, int columns = 48) {
-    const double pi = 3.14159265358979323846;
     const Double3 side = unit(cross(dir, std::abs(dir[2]) < 0.9 ? Double3{0, 0, 1} : Double3{1, 0, 0})), other = cross(dir, side);
     std::vector<Scattered> lights;
     for (int i = 0; i < rows; ++i)

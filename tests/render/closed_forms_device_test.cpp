@@ -4,8 +4,6 @@
 namespace clvr::testing {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 struct Slab : ::testing::TestWithParam<double> {};
 
 /// Path tracer, features and dvr agree with Beer's law.

@@ -6,8 +6,6 @@
 namespace clvr::testing {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 constexpr int env_width = 24, env_height = 12;
 
 void light_by_image(Scene& s) {

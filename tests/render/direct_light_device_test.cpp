@@ -10,14 +10,12 @@
 namespace clvr::testing {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 /// Mean of a channel (0 R, 1 G, 2 B) of the key's or the sky's light over the picture.
-struct Light {
+struct FeatureLight {
     double key, sky;
 };
 
-Light mean_light(const Voxels& v, const Scene& scene, int channel = 0) {
+FeatureLight mean_light(const Voxels& v, const Scene& scene, int channel = 0) {
     const Stage stage(v, scene);
     const Marched m = march(shared_device(), stage);
     const auto mean = [&](int plane) {
@@ -36,7 +34,7 @@ double box_key(double optical_depth, double g, double expected_error) {
     const Stage stage(box.volume, box.scene);
     const auto& key = stage.render.key;
     const double expected = box.expected({box.scattered({key.x, key.y, key.z}, stage.render.key_radiance.x)});
-    const Light found = mean_light(box.volume, box.scene);
+    const FeatureLight found = mean_light(box.volume, box.scene);
     EXPECT_NEAR(found.key / expected, 1, expected_error) << optical_depth << ' ' << g;
     return found.sky;
 }

@@ -10,8 +10,7 @@ namespace clvr::testing {
 namespace {
 
 using shared::float4;
-constexpr double pi = 3.14159265358979323846;
-enum Function { sample_light, light_at, sample_environment, environment_at };
+enum LightFunction { sample_light, light_at, sample_environment, environment_at };
 
 constexpr int env_width = 16, env_height = 8;
 
@@ -60,7 +59,7 @@ struct Lights : ::testing::Test {
     Device device = shared_device();
     Kernel kernel = test_kernel(device, "light_values", {{"CLVR_WIDTH", "1"}});
 
-    Lit run(const Stage& stage, Function function, const std::vector<float4>& in) {
+    Lit run(const Stage& stage, LightFunction function, const std::vector<float4>& in) {
         const DeviceLights light(device, stage.render, stage.environment);
         const Buffer input = device.upload(in, "in"), at = device.buffer(16 * in.size(), "at"),
                      radiance = device.buffer(16 * in.size(), "radiance");
@@ -68,7 +67,7 @@ struct Lights : ::testing::Test {
         device.launch(kernel, {count}, {64}, {}, light.arguments(), input, at, radiance, count, static_cast<int>(function));
         return {device.download<float4>(at, in.size()), device.download<float4>(radiance, in.size())};
     }
-    Lit samples(const Stage& stage, Function function, std::size_t count = 1 << 18) {
+    Lit samples(const Stage& stage, LightFunction function, std::size_t count = 1 << 18) {
         std::mt19937 random(17);
         std::vector<float4> in(count);
         for (auto& u : in) u = {uniform_float(random), uniform_float(random), uniform_float(random), 0};

@@ -4,16 +4,15 @@
 namespace clvr::testing {
 namespace {
 
-enum Function { log_of, exp_of, sincos_of, atan2_of, acos_of };
+enum MathFunction { log_of, exp_of, sincos_of, atan2_of, acos_of };
 using Floats = std::vector<float>;
-constexpr double pi = 3.14159265358979323846;
 
 struct Values {
     Floats first, second;
 };
 
 /// b as long as a, a multiple of 16.
-Values evaluate(Device& device, int width, Function function, const Floats& a, const Floats& b) {
+Values evaluate(Device& device, int width, MathFunction function, const Floats& a, const Floats& b) {
     Kernel kernel = device.kernel("selftest/math_values", {{"CLVR_WIDTH", std::to_string(width)}});
     const Buffer in_a = device.upload(a, "a"), in_b = device.upload(b, "b");
     const Buffer first = device.buffer(4 * a.size(), "first"), second = device.buffer(4 * a.size(), "second");
@@ -64,7 +63,7 @@ double largest_error(const Floats& found, const Floats& a, const Floats& b, bool
 
 struct Math : ::testing::Test {
     Device device = shared_device();
-    double error(Function f, const Floats& a, const Floats& b, bool in_ulps, double (*truth)(double, double), bool second = false) {
+    double error(MathFunction f, const Floats& a, const Floats& b, bool in_ulps, double (*truth)(double, double), bool second = false) {
         const Values v = evaluate(device, 16, f, a, b);
         return largest_error(second ? v.second : v.first, a, b, in_ulps, truth);
     }

@@ -12,8 +12,7 @@ namespace clvr::testing {
 namespace {
 
 using shared::float4;
-constexpr double pi = 3.14159265358979323846;
-enum Function { phase_sample, phase_value, surface_sample, surface_value };
+enum ScatterFunction { phase_sample, phase_value, surface_sample, surface_value };
 
 float4 packed(const Double3& v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), 0}; }
 Double3 unpacked(const float4& v) { return {v.x, v.y, v.z}; }
@@ -42,21 +41,21 @@ struct Scatter : ::testing::Test {
     float g = 0;
     Double3 normal{0, 0, 1}, out{0, 0, 1}, albedo{1, 1, 1};
 
-    std::vector<float4> run(Function function, const std::vector<float4>& in) {
+    std::vector<float4> run(ScatterFunction function, const std::vector<float4>& in) {
         const Buffer input = device.upload(in, "in"), result = device.buffer(16 * in.size(), "result");
         const auto count = static_cast<std::uint32_t>(in.size());
         device.launch(kernel, {count}, {64}, {}, lobe, g, packed(normal), packed(out), packed(albedo), input, result, count,
                       static_cast<int>(function));
         return device.download<float4>(result, in.size());
     }
-    std::vector<float4> samples(Function function, std::size_t count) {
+    std::vector<float4> samples(ScatterFunction function, std::size_t count) {
         std::mt19937 random(11);
         std::vector<float4> in(count);
         for (auto& u : in) u = {uniform_float(random), uniform_float(random), uniform_float(random), 0};
         return run(function, in);
     }
     /// Values at the midpoints of `polar` cosines in low..1 by `around` azimuths about `axis`.
-    std::vector<float4> grid(Function function, const Double3& axis, double low, int polar, int around) {
+    std::vector<float4> grid(ScatterFunction function, const Double3& axis, double low, int polar, int around) {
         const Frame3 frame(axis);
         std::vector<float4> in;
         for (int i = 0; i < polar; ++i)

@@ -10,7 +10,6 @@ namespace clvr {
 namespace {
 
 constexpr int width = 128, height = 64;
-constexpr double pi = 3.14159265358979323846;
 
 struct Image {
     std::vector<float> rgb = std::vector<float>(3 * width * height, 0.5f);

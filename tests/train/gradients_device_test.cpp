@@ -8,7 +8,7 @@
 namespace clvr::testing {
 namespace {
 
-struct Random {
+struct Random01 {
     std::uint64_t k;
     double operator()() { // 0..1
         k = k * 6364136223846793005u + 1442695040888963407u;
@@ -41,7 +41,7 @@ Model model_of(const Case& c, std::uint64_t seed) {
     m.control_variate = c.control_variate;
     m.albedo_floor = c.preprocessing ? 1.0f / 32 : 0x1p-20f;
     initialise(m, seed);
-    Random random{seed};
+    Random01 random{seed};
     for (std::vector<float>* bias : {&m.conv1_bias, &m.conv2_bias})
         for (float& b : *bias) b = static_cast<float>(random() - 0.5);
     return m;
@@ -68,7 +68,7 @@ struct Setting {
         : device(opened(width_of_vectors)), model(model_of(c, seed)), shape{c.width, c.height, 1, false, true}, grid(device, model, shape) {
         const Frame frame = noisy_frame(c.width, c.height);
         Frame target = frame;
-        Random random{seed + 1};
+        Random01 random{seed + 1};
         for (const char* name : {"R", "G", "B"})
             for (float& v : target.channel(name)) v = static_cast<float>(0.02 + 1.2 * random() * random());
         const ChannelPlan plan(model, true);
@@ -150,7 +150,7 @@ TEST(ReferenceGradient, IsTheSlopeOfItsLoss) {
         for (const auto& [unused, loss] : losses) {
             if (loss == reference::GridLoss::noisy) continue; // its slope leaves out the denominator, on purpose
             const reference::GridPass at = reference::backward(network, s.image, loss);
-            Random random{77};
+            Random01 random{77};
             int tried = 0, checked = 0;
             while (checked < 50 && tried < 200) {
                 ++tried;

@@ -15,7 +15,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
     std::error_code failed;
     std::filesystem::create_directories(path.parent_path(), failed);
     if (failed) throw Error(ErrorKind::input, "cannot be made: " + failed.message(), path.parent_path().string());
-    write_atomically(path.string(), text.data(), text.size());
+    write_atomically(path.string(), text);
 }
 
 void write_share_files(const CLI::App& program, const std::string& version, const Placeholders& placeholders, const std::string& folder) {

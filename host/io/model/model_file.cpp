@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-constexpr const char* format_tag = "model/1";
+constexpr const char* model_tag = "model/1";
 const char* const format_key = "clvr.format";
 const char* const settings_key = "clvr.model";
 
@@ -77,8 +77,8 @@ Model model_of(const TensorFile& file, const std::string& where) {
         m.conv2_bias = floats_of(file, "conv2.bias", 1, bias2);
         const auto format = file.metadata.find(format_key);
         const auto settings = file.metadata.find(settings_key);
-        if (format != file.metadata.end() && format->second != format_tag)
-            throw Error(ErrorKind::input, fmt::format("{} is \"{}\"; this clvr reads {}", format_key, format->second, format_tag));
+        if (format != file.metadata.end() && format->second != model_tag)
+            throw Error(ErrorKind::input, fmt::format("{} is \"{}\"; this clvr reads {}", format_key, format->second, model_tag));
         if (settings != file.metadata.end())
             read_settings(settings->second, where, m);
         else if (shape1[1] == 10)
@@ -130,7 +130,7 @@ TensorFile tensors_of(const Model& m) {
                     {"conv2.weight", float_tensor({m.outputs(), m.hidden, k, k}, m.conv2_weight)},
                     {"conv2.bias", float_tensor({m.outputs()}, m.conv2_bias)}};
     file.metadata = m.notes;
-    file.metadata[format_key] = format_tag;
+    file.metadata[format_key] = model_tag;
     file.metadata[settings_key] = model_settings_json(m);
     return file;
 }

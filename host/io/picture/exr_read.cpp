@@ -28,7 +28,7 @@ namespace {
 constexpr int largest_exr_side = 65536;
 constexpr std::size_t largest_pixels = std::size_t{1} << 28; // 16384 x 16384, the largest picture that clvr renders
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::input, what); }
+[[noreturn]] void refuse_exr(const std::string& what) { throw Error(ErrorKind::input, what); }
 
 Region region_of(const Imath::Box2i& w) { return {w.min.x, w.min.y, w.max.x - w.min.x + 1, w.max.y - w.min.y + 1}; }
 
@@ -37,13 +37,13 @@ void check_size(const char* what, const Imath::Box2i& window) {
                     height = static_cast<long long>(window.max.y) - window.min.y + 1;
     if (width < 1 || height < 1 || width > largest_exr_side || height > largest_exr_side ||
         static_cast<std::size_t>(width * height) > largest_pixels)
-        refuse(fmt::format("has a {} of {} x {} pixels; expected 1 x 1 to 16384 x 16384", what, width, height));
+        refuse_exr(fmt::format("has a {} of {} x {} pixels; expected 1 x 1 to 16384 x 16384", what, width, height));
 }
 
 bool is_deep(const Imf::Header& header) { return header.hasType() && Imf::isDeepData(header.type()); }
 
 /// A part's channels that become the frame's, as (theirs, the frame's) ...
-using Names = std::vector<std::pair<std::string, std::string>>;
+using ChannelNames = std::vector<std::pair<std::string, std::string>>;
 
 bool is_chroma(const Imf::ChannelList& channels) {
     return channels.findChannel("Y") && channels.findChannel("RY") && channels.findChannel("BY");
@@ -52,15 +52,15 @@ bool is_chroma(const Imf::ChannelList& channels) {
 /// ... and whether they are luminance and chroma, which are read by themselves.
 struct Part {
     int number = 0;
-    Names names;
+    ChannelNames names;
     bool chroma = false;
 };
 
-void check_header(const Imf::Header& header, const Names& names) {
+void check_header(const Imf::Header& header, const ChannelNames& names) {
     for (const auto& [theirs, ours] : names) {
         const Imf::Channel& channel = header.channels()[theirs.c_str()];
         if (channel.xSampling != 1 || channel.ySampling != 1)
-            refuse(fmt::format("channel {} is subsampled; store every channel at full size", theirs));
+            refuse_exr(fmt::format("channel {} is subsampled; store every channel at full size", theirs));
     }
 }
 
@@ -71,7 +71,7 @@ Imf::Slice plane(float* values, const Imath::Box2i& window, int first_row, int r
 }
 
 /// Reads the last line alone, so that a header that promises more pixels than the file holds fails before they are allocated.
-void probe_last_line(Imf::InputPart& part, const Names& names) {
+void probe_last_line(Imf::InputPart& part, const ChannelNames& names) {
     const Imath::Box2i window = part.header().dataWindow();
     std::vector<float> line(static_cast<std::size_t>(window.max.x - window.min.x + 1));
     Imf::FrameBuffer buffer;
@@ -170,7 +170,7 @@ std::vector<Part> chosen_parts(const Imf::MultiPartInputFile& file, Frame& frame
         parts.push_back(part);
     }
     if (std::all_of(parts.begin(), parts.end(), [](const ExrPart& p) { return p.deep; }))
-        refuse("is a deep image; flatten it to scanlines first");
+        refuse_exr("is a deep image; flatten it to scanlines first");
     ExrNames names = frame_names(parts, views);
     frame.notes = std::move(names.notes);
     std::vector<Part> chosen;
@@ -181,11 +181,11 @@ std::vector<Part> chosen_parts(const Imf::MultiPartInputFile& file, Frame& frame
             const bool of_chroma = part.chroma && (theirs == "Y" || theirs == "RY" || theirs == "BY" || theirs == "A");
             if (!ours.empty() && !of_chroma) part.names.emplace_back(theirs, ours);
         }
-        if (part.chroma && file.parts() > 1) refuse("has a part of luminance and chroma (Y RY BY); store R G B, or that part alone");
+        if (part.chroma && file.parts() > 1) refuse_exr("has a part of luminance and chroma (Y RY BY); store R G B, or that part alone");
         if (part.chroma) frame.notes.push_back("is luminance and chroma (Y RY BY): read as R G B of half precision");
         if (!part.names.empty() || part.chroma) chosen.push_back(part);
     }
-    if (chosen.empty()) refuse("has no channels");
+    if (chosen.empty()) refuse_exr("has no channels");
     return chosen;
 }
 
@@ -203,7 +203,7 @@ void set_windows(const Imf::MultiPartInputFile& file, const std::vector<Part>& p
     }
     check_size("data window of all parts together", all);
     const Region reached = region_of(all);
-    if (reached.pixels() / 64 > pixels) refuse("has parts that lie far from one another: their windows together are mostly empty");
+    if (reached.pixels() / 64 > pixels) refuse_exr("has parts that lie far from one another: their windows together are mostly empty");
     if (differ) frame.notes.push_back("has parts with different data windows: joined, with 0 where a part has no pixels");
     frame.x = reached.x, frame.y = reached.y, frame.width = reached.width, frame.height = reached.height;
     const Imf::Header& first = file.header(parts.front().number);

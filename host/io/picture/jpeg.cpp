@@ -12,7 +12,7 @@ namespace clvr {
 namespace {
 
 constexpr int quality = 95, largest_side = 65500; // libjpeg's JPEG_MAX_DIMENSION
-constexpr std::size_t largest_pixels = std::size_t{1} << 28;
+constexpr std::size_t largest_jpeg_pixels = std::size_t{1} << 28;
 
 using Handle = std::unique_ptr<void, int (*)(tjhandle)>;
 
@@ -59,7 +59,7 @@ Frame read_jpeg(const std::string& path) {
         throw refuse("is no JPEG that clvr reads");
     if (colours == TJCS_CMYK || colours == TJCS_YCCK) throw Error(ErrorKind::input, "is a JPEG of inks (CMYK); save it as RGB", path);
     const std::size_t count = static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height);
-    if (count > largest_pixels)
+    if (count > largest_jpeg_pixels)
         throw Error(ErrorKind::input, fmt::format("is {} x {} pixels; expected at most 2^28 in all", pixels.width, pixels.height), path);
     pixels.values.resize(3 * count);
     if (tjDecompress2(decoder.get(), data, bytes.size(), pixels.values.data(), pixels.width, 0, pixels.height, TJPF_RGB,

@@ -16,21 +16,22 @@ namespace {
 constexpr std::size_t largest_bytes = std::size_t{1} << 30; // a 16384 x 8192 Radiance file without compression has half of this
 constexpr int largest_image_side = 16384;
 
-[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::input, what); }
+[[noreturn]] void refuse_radiance(const std::string& what) { throw Error(ErrorKind::input, what); }
 
 /// Takes lines and bytes off the front of a Radiance file; refuses to go past its end.
 struct Cursor {
     std::string_view left;
     std::string_view line() {
         const std::size_t end = left.find('\n');
-        if (end == left.npos) refuse("is no complete Radiance image: its header has no end");
+        if (end == left.npos) refuse_radiance("is no complete Radiance image: its header has no end");
         std::string_view taken = left.substr(0, end);
         left.remove_prefix(end + 1);
         while (!taken.empty() && (taken.back() == '\r' || taken.back() == ' ')) taken.remove_suffix(1);
         return taken;
     }
     std::string_view take(std::size_t n) {
-        if (left.size() < n) refuse(fmt::format("is no complete Radiance image: {} bytes or more are missing at its end", n - left.size()));
+        if (left.size() < n)
+            refuse_radiance(fmt::format("is no complete Radiance image: {} bytes or more are missing at its end", n - left.size()));
         const std::string_view taken = left.substr(0, n);
         left.remove_prefix(n);
         return taken;
@@ -61,7 +62,7 @@ std::array<double, N> positive(std::string_view line, std::size_t sign) {
         char* end = nullptr;
         value = std::strtod(at, &end);
         if (end == at || !(value > 0) || !std::isfinite(value))
-            refuse(fmt::format("has the line '{}'; expected positive numbers", line.substr(0, 80)));
+            refuse_radiance(fmt::format("has the line '{}'; expected positive numbers", line.substr(0, 80)));
         at = end;
     }
     return values;
@@ -75,19 +76,20 @@ void read_resolution(const std::string& line, Header& h) {
         line[static_cast<std::size_t>(end)] == '\0';
     const auto known = [](char s, char a) { return (s == '-' || s == '+') && (a == 'X' || a == 'Y'); };
     if (!read || !known(sign[0], axis[0]) || !known(sign[1], axis[1]) || axis[0] == axis[1])
-        refuse(fmt::format("has the resolution line '{}'; expected '-Y height +X width'", line));
+        refuse_radiance(fmt::format("has the resolution line '{}'; expected '-Y height +X width'", line));
     h.upright = axis[0] == 'Y';
     // -Y goes down and +X to the right, as rows and columns do here
     const auto back = [&](int k) { return sign[k] == (axis[k] == 'Y' ? '+' : '-'); };
     h.line_back = back(0), h.pixel_back = back(1);
     h.lines = count[0], h.line_pixels = count[1];
     if (h.lines < 1 || h.line_pixels < 1 || h.lines > largest_image_side || h.line_pixels > largest_image_side)
-        refuse(fmt::format("has {} x {} pixels; expected 1 x 1 to {} x {}", h.width(), h.height(), largest_image_side, largest_image_side));
+        refuse_radiance(
+            fmt::format("has {} x {} pixels; expected 1 x 1 to {} x {}", h.width(), h.height(), largest_image_side, largest_image_side));
 }
 
 Header read_header(Cursor& at) {
     if (const auto magic = at.line(); magic != "#?RADIANCE" && magic != "#?RGBE")
-        refuse("is no Radiance image: its first line is not #?RADIANCE");
+        refuse_radiance("is no Radiance image: its first line is not #?RADIANCE");
     Header h;
     bool rgbe = false;
     for (std::string_view line = at.line(); !line.empty(); line = at.line()) {
@@ -109,9 +111,9 @@ Header read_header(Cursor& at) {
             h.other_primaries = true;
         }
     }
-    if (!rgbe) refuse("has another pixel format than 32-bit_rle_rgbe");
+    if (!rgbe) refuse_radiance("has another pixel format than 32-bit_rle_rgbe");
     for (const double f : h.factor)
-        if (!(f > 1e-30 && f < 1e30)) refuse(fmt::format("has EXPOSURE and COLORCORR lines that multiply to {}", f));
+        if (!(f > 1e-30 && f < 1e30)) refuse_radiance(fmt::format("has EXPOSURE and COLORCORR lines that multiply to {}", f));
     read_resolution(std::string(at.line().substr(0, 64)), h);
     return h;
 }
@@ -127,7 +129,7 @@ void read_line(Cursor& at, std::vector<unsigned char>& rgbe, std::size_t y) {
             const std::string_view p = at.take(4);
             if (p[0] == 1 && p[1] == 1 && p[2] == 1) {
                 const std::size_t n = shift < 24 ? static_cast<std::size_t>(static_cast<unsigned char>(p[3])) << shift : row + 1;
-                if (x == 0 || n > row - x) refuse(fmt::format("is damaged: a run of {} pixels in line {} from pixel {}", n, y, x));
+                if (x == 0 || n > row - x) refuse_radiance(fmt::format("is damaged: a run of {} pixels in line {} from pixel {}", n, y, x));
                 for (std::size_t k = 0; k < 4 * n; ++k) rgbe[4 * x + k] = rgbe[4 * x + k - 4];
                 x += n, shift += 8;
             } else {
@@ -139,13 +141,13 @@ void read_line(Cursor& at, std::vector<unsigned char>& rgbe, std::size_t y) {
     }
     at.take(4);
     if ((static_cast<std::size_t>(static_cast<unsigned char>(start[2])) << 8 | static_cast<unsigned char>(start[3])) != row)
-        refuse(fmt::format("is damaged: line {} does not start with its width", y));
+        refuse_radiance(fmt::format("is damaged: line {} does not start with its width", y));
     for (std::size_t component = 0; component < 4; ++component)
         for (std::size_t x = 0; x < row;) {
             const unsigned code = at.byte();
             const std::size_t length = code > 128 ? code - 128 : code;
             if (length == 0 || length > row - x)
-                refuse(fmt::format("is damaged: a run of {} pixels in line {} from pixel {}", length, y, x));
+                refuse_radiance(fmt::format("is damaged: a run of {} pixels in line {} from pixel {}", length, y, x));
             const std::string_view values = at.take(code > 128 ? 1 : length);
             for (std::size_t k = 0; k < length; ++k, ++x) rgbe[4 * x + component] = static_cast<unsigned char>(values[code > 128 ? 0 : k]);
         }

@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* format_tag = "scene/1";
+constexpr const char* scene_tag = "scene/1";
 
 template <class E>
 using Names = std::vector<std::pair<const char*, E>>;
@@ -148,7 +148,7 @@ void for_each_path(Scene& scene, F&& change) {
 } // namespace
 
 std::string to_json(const Scene& scene) {
-    ordered_json to{{"clvr.format", format_tag},     {"volume", scene.volume},         {"volume_sha256", scene.volume_sha256},
+    ordered_json to{{"clvr.format", scene_tag},      {"volume", scene.volume},         {"volume_sha256", scene.volume_sha256},
                     {"frame", scene.reading.frame},  {"series", scene.reading.series}, {"allow_gaps", scene.reading.allow_gaps},
                     {"raw", raw_json(scene.reading)}};
     put_optional(to, "channel", scene.reading.channel);
@@ -183,7 +183,7 @@ Scene parse_scene(const std::string& json_text, const std::string& where) {
     std::string format;
     fields.required("clvr.format");
     fields.get("clvr.format", format);
-    if (format != format_tag) fields.fail("clvr.format", format_tag);
+    if (format != scene_tag) fields.fail("clvr.format", scene_tag);
 
     Scene scene;
     fields.required("volume");
@@ -234,7 +234,7 @@ void write_scene(const Scene& scene, const std::string& path) {
     for_each_path(written,
                   [&](std::string& named) { named = fs::weakly_canonical(fs::absolute(named)).lexically_relative(folder).string(); });
     const std::string text = to_json(written);
-    write_atomically(path, text.data(), text.size());
+    write_atomically(path, text);
 }
 
 std::string provenance_json(const Scene& scene) {

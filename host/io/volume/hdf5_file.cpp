@@ -11,7 +11,7 @@ namespace clvr {
 namespace {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t));
-constexpr std::uint64_t deflate_ratio = 1032; // the greatest ratio of the accepted HDF5 filters, but for constant chunks
+constexpr std::uint64_t filter_ratio = 1032; // the greatest ratio of the accepted HDF5 filters, but for constant chunks
 constexpr std::size_t greatest_attribute = std::size_t{1} << 20;
 
 /// An identifier of the library, closed at the end; negative where opening failed.
@@ -280,10 +280,10 @@ void Hdf5File::check_readable(const Hdf5Dataset& d) const {
     const Id type(H5Dget_type(id), H5Tclose);
     const std::uint64_t values = bytes / sample_bytes(*d.type), size = std::clamp<std::uint64_t>(H5Tget_size(type), 1, 64);
     if (stored == 0) bad_file(path_, "data set {} is empty: no values were written to it", d.path);
-    if (values * size > (layout == H5D_CHUNKED ? stored * deflate_ratio : stored))
+    if (values * size > (layout == H5D_CHUNKED ? stored * filter_ratio : stored))
         bad_file(path_, "data set {} has {} bytes of values, of which {} bytes are stored: most of it is empty, or the file is truncated",
                  d.path, values * size, stored);
-    if (layout == H5D_CHUNKED) check_capacity(chunk_bytes, file_bytes * deflate_ratio, path_);
+    if (layout == H5D_CHUNKED) check_capacity(chunk_bytes, file_bytes * filter_ratio, path_);
 }
 
 void Hdf5File::read(const Hdf5Dataset& d, const std::vector<std::uint64_t>& start, const std::vector<std::uint64_t>& count,

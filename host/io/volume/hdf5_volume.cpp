@@ -11,20 +11,20 @@ namespace clvr {
 
 namespace {
 
-enum class Role { x, y, z, frame, channel, unknown };
+enum class AxisRole { x, y, z, frame, channel, unknown };
 
 std::string shape_of(const Hdf5Dataset& d) { return d.dims.empty() ? "one value" : fmt::format("{}", fmt::join(d.dims, " x ")); }
 
 /// What a label means: "z", "time", "c".
-Role role_named(const std::string& label) {
+AxisRole role_named(const std::string& label) {
     const std::string name = lower_case(trimmed(label));
-    for (const auto& [names, role] : {std::pair{std::vector<std::string>{"x"}, Role::x},
-                                      {std::vector<std::string>{"y"}, Role::y},
-                                      {std::vector<std::string>{"z"}, Role::z},
-                                      {std::vector<std::string>{"t", "time", "frame"}, Role::frame},
-                                      {std::vector<std::string>{"c", "ch", "channel"}, Role::channel}})
+    for (const auto& [names, role] : {std::pair{std::vector<std::string>{"x"}, AxisRole::x},
+                                      {std::vector<std::string>{"y"}, AxisRole::y},
+                                      {std::vector<std::string>{"z"}, AxisRole::z},
+                                      {std::vector<std::string>{"t", "time", "frame"}, AxisRole::frame},
+                                      {std::vector<std::string>{"c", "ch", "channel"}, AxisRole::channel}})
         if (std::find(names.begin(), names.end(), name) != names.end()) return role;
-    return Role::unknown;
+    return AxisRole::unknown;
 }
 
 /// One label an axis: by HDF5's dimension scales, or by vigra's and ilastik's "axistags". Empty where there are none.
@@ -41,20 +41,20 @@ std::vector<std::string> labels_of(const Hdf5File& file, const Hdf5Dataset& d) {
 }
 
 /// Roles by labels; empty unless every axis of more than one entry has a role of its own, x and y among them.
-std::vector<Role> roles_by_label(const Hdf5Dataset& d, const std::vector<std::string>& labels) {
-    std::vector<Role> roles;
+std::vector<AxisRole> roles_by_label(const Hdf5Dataset& d, const std::vector<std::string>& labels) {
+    std::vector<AxisRole> roles;
     for (const std::string& label : labels) roles.push_back(role_named(label));
     for (std::size_t i = 0; i < roles.size(); ++i)
-        if ((roles[i] == Role::unknown && d.dims[i] > 1) ||
-            (roles[i] != Role::unknown && std::count(roles.begin(), roles.end(), roles[i]) > 1))
+        if ((roles[i] == AxisRole::unknown && d.dims[i] > 1) ||
+            (roles[i] != AxisRole::unknown && std::count(roles.begin(), roles.end(), roles[i]) > 1))
             return {};
-    const auto has = [&](Role r) { return std::find(roles.begin(), roles.end(), r) != roles.end(); };
-    return has(Role::x) && has(Role::y) ? roles : std::vector<Role>{};
+    const auto has = [&](AxisRole r) { return std::find(roles.begin(), roles.end(), r) != roles.end(); };
+    return has(AxisRole::x) && has(AxisRole::y) ? roles : std::vector<AxisRole>{};
 }
 
 /// Roles by number: (z, y, x) or (y, x) once axes of one entry are left out; a fourth axis only where --channel says what it is.
-std::vector<Role> roles_by_number(const Hdf5File& file, const Hdf5Dataset& d, const std::vector<std::string>& labels,
-                                  const VolumeReadOptions& options) {
+std::vector<AxisRole> roles_by_number(const Hdf5File& file, const Hdf5Dataset& d, const std::vector<std::string>& labels,
+                                      const VolumeReadOptions& options) {
     std::vector<std::size_t> axes(d.dims.size());
     std::iota(axes.begin(), axes.end(), std::size_t{0});
     for (std::size_t i = 0; axes.size() > 3 && i < axes.size();) // axes of one entry say nothing
@@ -62,18 +62,18 @@ std::vector<Role> roles_by_number(const Hdf5File& file, const Hdf5Dataset& d, co
             axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(i));
         else
             ++i;
-    std::vector<Role> roles(d.dims.size(), Role::unknown);
+    std::vector<AxisRole> roles(d.dims.size(), AxisRole::unknown);
     if (axes.size() == 4 && options.channel && labels.empty()) { // few entries behind many: channels of each voxel
         const auto size = [&](std::size_t i) { return d.dims[axes[i]]; };
         const std::size_t channels = size(3) <= 4 && std::min({size(0), size(1), size(2)}) > 4 ? 3 : 0;
-        roles[axes[channels]] = Role::channel;
+        roles[axes[channels]] = AxisRole::channel;
         axes.erase(axes.begin() + static_cast<std::ptrdiff_t>(channels));
     }
     if (axes.size() < 2 || axes.size() > 3)
         bad_file(file.path(), "data set {} has the shape {}{}: expected (z, y, x) or labelled axes among t, c, z, y, x{}", d.path,
                  shape_of(d), labels.empty() ? std::string(" and no labels") : fmt::format(" with the axes {}", fmt::join(labels, ", ")),
                  axes.size() == 4 && labels.empty() ? "; --channel N takes entry N of the axis beyond three" : "");
-    const Role order[] = {Role::z, Role::y, Role::x};
+    const AxisRole order[] = {AxisRole::z, AxisRole::y, AxisRole::x};
     for (std::size_t i = 0; i < axes.size(); ++i) roles[axes[i]] = order[3 - axes.size() + i];
     return roles;
 }
@@ -147,22 +147,24 @@ Hdf5Volume plain_hdf5_volume(const Hdf5File& file, const std::string& inside, co
     file.check_readable(h.data);
     describe(v, file.path(), "HDF5", *h.data.type);
     const std::vector<std::string> labels = labels_of(file, h.data);
-    std::vector<Role> roles = roles_by_label(h.data, labels);
+    std::vector<AxisRole> roles = roles_by_label(h.data, labels);
     const bool by_label = !roles.empty();
     if (!by_label) roles = roles_by_number(file, h.data, labels, options);
 
     std::int64_t frames = 1, channels = 1;
     for (std::size_t i = 0; i < roles.size(); ++i) {
-        if (roles[i] == Role::frame) frames = h.data.dims[i];
-        if (roles[i] == Role::channel) channels = h.data.dims[i];
+        if (roles[i] == AxisRole::frame) frames = h.data.dims[i];
+        if (roles[i] == AxisRole::channel) channels = h.data.dims[i];
     }
     check_frame(options.frame, frames, file.path());
     const auto channel = chosen_channel(options, channels, file.path(), v.notes);
     say_frame(options.frame, frames, "t", v.decisions);
     std::string order;
     for (std::size_t i = 0; i < roles.size(); ++i) {
-        const bool spatial = roles[i] == Role::x || roles[i] == Role::y || roles[i] == Role::z;
-        h.start.push_back(static_cast<std::uint64_t>(roles[i] == Role::frame ? options.frame : roles[i] == Role::channel ? channel : 0));
+        const bool spatial = roles[i] == AxisRole::x || roles[i] == AxisRole::y || roles[i] == AxisRole::z;
+        h.start.push_back(static_cast<std::uint64_t>(roles[i] == AxisRole::frame     ? options.frame
+                                                     : roles[i] == AxisRole::channel ? channel
+                                                                                     : 0));
         h.count.push_back(spatial ? static_cast<std::uint64_t>(h.data.dims[i]) : 1);
         if (spatial) h.axis[static_cast<std::size_t>(roles[i])] = i;
         static constexpr const char* names[] = {"x", "y", "z", "t", "c", "-"};

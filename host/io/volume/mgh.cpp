@@ -8,7 +8,7 @@ namespace clvr {
 
 namespace {
 
-constexpr std::size_t header_bytes = 284;
+constexpr std::size_t mgh_header_bytes = 284;
 
 SampleType sample_type(int type, const std::string& path) {
     switch (type) {
@@ -63,9 +63,9 @@ Geometry geometry(const HeaderBytes& h, const Int3& dims, Voxels& v) {
 
 Voxels read_mgh(const std::string& path, const VolumeReadOptions& options) {
     ByteStream stream = open_inside(path);
-    std::string bytes(header_bytes, '\0');
-    if (const std::size_t got = stream.read(bytes.data(), header_bytes); got < header_bytes)
-        bad_file(path, "expected an MGH header of {} bytes, found {}: the file is truncated", header_bytes, got);
+    std::string bytes(mgh_header_bytes, '\0');
+    if (const std::size_t got = stream.read(bytes.data(), mgh_header_bytes); got < mgh_header_bytes)
+        bad_file(path, "expected an MGH header of {} bytes, found {}: the file is truncated", mgh_header_bytes, got);
     const HeaderBytes h(bytes, must_swap(true));
     if (const int version = h.at<std::int32_t>(0); version != 1) bad_file(path, "not an MGH file: its version is {}, expected 1", version);
     const auto size = [&](std::size_t i) { return std::int64_t{h.at<std::int32_t>(4 + 4 * i)}; };
@@ -79,12 +79,12 @@ Voxels read_mgh(const std::string& path, const VolumeReadOptions& options) {
     v.geometry = geometry(h, v.dims, v);
     check_geometry(v.geometry, path);
     say_frame(options.frame, size(3), "the fourth axis", v.decisions);
-    check_capacity(dims.bytes, stream.capacity() - header_bytes, path);
+    check_capacity(dims.bytes, stream.capacity() - mgh_header_bytes, path);
     stream.skip(dims.frame_bytes * static_cast<std::uint64_t>(options.frame));
     read_samples(stream, type, must_swap(true), v);
     stream.drain(); // behind the voxels stand scan parameters and tags
-    if (stream.position() < header_bytes + dims.bytes)
-        bad_file(path, "expected {} bytes of voxels, found {}: the file is truncated", dims.bytes, stream.position() - header_bytes);
+    if (stream.position() < mgh_header_bytes + dims.bytes)
+        bad_file(path, "expected {} bytes of voxels, found {}: the file is truncated", dims.bytes, stream.position() - mgh_header_bytes);
     return v;
 }
 

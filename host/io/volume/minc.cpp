@@ -12,7 +12,8 @@ namespace clvr {
 
 namespace {
 
-constexpr const char *image = "/minc-2.0/image/0/image", *least = "/minc-2.0/image/0/image-min", *greatest = "/minc-2.0/image/0/image-max";
+constexpr const char *minc_image = "/minc-2.0/image/0/image", *least = "/minc-2.0/image/0/image-min",
+                     *greatest = "/minc-2.0/image/0/image-max";
 
 /// The names of an object's axes, slowest first.
 std::vector<std::string> axes_of(const Hdf5File& file, const std::string& object) {
@@ -25,7 +26,7 @@ std::vector<std::string> axes_of(const Hdf5File& file, const std::string& object
 /// Which real values the valid range of each slice means: one for all, or one for each entry of the slowest axis but time.
 void set_scale(const Hdf5File& file, Hdf5Volume& h, const std::vector<std::string>& names, std::size_t frame) {
     if (*h.data.type == SampleType::f32 || *h.data.type == SampleType::f64) return; // floats are real values
-    std::vector<double> range = file.numbers(image, "valid_range");
+    std::vector<double> range = file.numbers(minc_image, "valid_range");
     if (range.size() != 2) {
         const double bits = 8.0 * static_cast<double>(sample_bytes(*h.data.type));
         const bool is_signed = sample_type_name(*h.data.type)[0] == 'i';
@@ -61,15 +62,15 @@ void set_scale(const Hdf5File& file, Hdf5Volume& h, const std::vector<std::strin
 
 } // namespace
 
-bool is_minc(const Hdf5File& file) { return file.is_dataset(image); }
+bool is_minc(const Hdf5File& file) { return file.is_dataset(minc_image); }
 
 Hdf5Volume minc_volume(const Hdf5File& file, const VolumeReadOptions& options) {
     Hdf5Volume h;
     Voxels& v = h.described;
-    h.data = file.dataset(image);
+    h.data = file.dataset(minc_image);
     file.check_readable(h.data);
     describe(v, file.path(), "MINC 2", *h.data.type);
-    const std::vector<std::string> names = axes_of(file, image);
+    const std::vector<std::string> names = axes_of(file, minc_image);
     if (names.size() != h.data.dims.size())
         bad_file(file.path(), "its image has {} axes, and names for {} (dimorder)", h.data.dims.size(), names.size());
     const Double3 to_lps{-1, -1, 1};

@@ -148,7 +148,7 @@ std::int64_t count_volumes(const HeaderBytes& h, std::int64_t sections, const st
     return sections / each;
 }
 
-HeaderBytes read_header(ByteStream& stream, const std::string& path) {
+HeaderBytes read_mrc_header(ByteStream& stream, const std::string& path) {
     std::string bytes(mrc_header_bytes, '\0');
     if (const std::size_t got = stream.read(bytes.data(), bytes.size()); got < bytes.size())
         bad_file(path, "expected an MRC header of {} bytes, found {}: the file is truncated", bytes.size(), got);
@@ -172,7 +172,7 @@ bool is_mrc_header(const std::string& head) {
 
 Voxels read_mrc(const std::string& path, const VolumeReadOptions& options) {
     ByteStream stream = open_inside(path);
-    const HeaderBytes h = read_header(stream, path);
+    const HeaderBytes h = read_mrc_header(stream, path);
     Voxels v;
     const SampleType type = sample_type(h, path, v.decisions);
     describe(v, path, "MRC", type);

@@ -10,21 +10,22 @@ namespace clvr {
 
 namespace {
 
-enum class Role { space, time, list, channel, foreign };
+enum class NrrdRole { space, time, list, channel, foreign };
 
 /// By the kind alone; `directed`: 1 the axis has a vector in space, -1 the header says it has none, 0 the header gives no directions.
-Role role_of(const std::string& kind, int directed, const std::string& path) {
+NrrdRole role_of(const std::string& kind, int directed, const std::string& path) {
     static const std::set<std::string> channels{"vector",   "covariant-vector", "normal",     "point",  "2-vector", "3-vector",
                                                 "4-vector", "3-normal",         "3-gradient", "scalar", "stub"};
     static const std::set<std::string> foreign{"complex", "quaternion"};
-    if (kind == "time") return Role::time;
-    if (kind == "list") return Role::list;
-    if (channels.count(kind)) return Role::channel;
-    if (foreign.count(kind) || kind.find("color") != std::string::npos || kind.find("matrix") != std::string::npos) return Role::foreign;
+    if (kind == "time") return NrrdRole::time;
+    if (kind == "list") return NrrdRole::list;
+    if (channels.count(kind)) return NrrdRole::channel;
+    if (foreign.count(kind) || kind.find("color") != std::string::npos || kind.find("matrix") != std::string::npos)
+        return NrrdRole::foreign;
     if (kind != "domain" && kind != "space" && !kind.empty() && kind != "???" && kind != "none")
         bad_file(path, "the NRRD kind \"{:.40}\" is not known: expected domain, space, time, list, vector, ...", kind);
-    if (directed < 0) return kind == "domain" || kind == "space" ? Role::time : Role::list;
-    return Role::space;
+    if (directed < 0) return kind == "domain" || kind == "space" ? NrrdRole::time : NrrdRole::list;
+    return NrrdRole::space;
 }
 
 /// Whether a direction runs along a fourth axis of the space alone: that of time.
@@ -50,41 +51,42 @@ NrrdAxes nrrd_axes(const NrrdHeader& h, const VolumeReadOptions& options, Voxels
     kinds.resize(count);
     const auto directions = nrrd_words_per_axis(h, "spacedirections", count, path);
 
-    std::vector<Role> roles(count, Role::space);
+    std::vector<NrrdRole> roles(count, NrrdRole::space);
     std::size_t spatial = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const bool none = !directions.empty() && lower_case(directions[i]) == "none";
         roles[i] = role_of(lower_case(kinds[i]), directions.empty() ? 0 : none ? -1 : 1, path);
-        if (roles[i] == Role::space && !directions.empty() && runs_in_time(directions[i])) roles[i] = Role::time;
-        if (roles[i] == Role::space && ++spatial > 3) roles[i] = Role::time;
+        if (roles[i] == NrrdRole::space && !directions.empty() && runs_in_time(directions[i])) roles[i] = NrrdRole::time;
+        if (roles[i] == NrrdRole::space && ++spatial > 3) roles[i] = NrrdRole::time;
     }
-    const auto several = [&](Role role) {
-        return std::count_if(roles.begin(), roles.end(), [&](const Role& r) { return r == role && axes.sizes[&r - roles.data()] > 1; });
+    const auto several = [&](NrrdRole role) {
+        return std::count_if(roles.begin(), roles.end(), [&](const NrrdRole& r) { return r == role && axes.sizes[&r - roles.data()] > 1; });
     };
     // A list is of times, unless there are times already or the user asks for a channel.
-    const bool list_is_channel = several(Role::time) > 0 || (options.channel && several(Role::channel) == 0 && several(Role::foreign) == 0);
-    std::replace(roles.begin(), roles.end(), Role::list, list_is_channel ? Role::channel : Role::time);
-    if (several(Role::time) > 1 || several(Role::channel) + several(Role::foreign) > 1)
+    const bool list_is_channel =
+        several(NrrdRole::time) > 0 || (options.channel && several(NrrdRole::channel) == 0 && several(NrrdRole::foreign) == 0);
+    std::replace(roles.begin(), roles.end(), NrrdRole::list, list_is_channel ? NrrdRole::channel : NrrdRole::time);
+    if (several(NrrdRole::time) > 1 || several(NrrdRole::channel) + several(NrrdRole::foreign) > 1)
         bad_file(path, "the volume has {} axes beside space with more than one entry: clvr reads at most one of times and one of channels",
-                 several(Role::time) + several(Role::channel) + several(Role::foreign));
+                 several(NrrdRole::time) + several(NrrdRole::channel) + several(NrrdRole::foreign));
 
     std::int64_t faster = 1, frames = 1, channels = 1;
     for (std::size_t i = 0; i < count; ++i) {
         const std::int64_t n = axes.sizes[i];
-        if (roles[i] == Role::space) {
+        if (roles[i] == NrrdRole::space) {
             axes.spatial.push_back(i);
             faster = std::min(faster, std::int64_t{1} << 31) * std::min(n, std::int64_t{1} << 31); // a hostile size is refused later
             continue;
         }
         if (n == 1) continue;
         OtherAxis other{n, 0, faster};
-        if (roles[i] == Role::time) {
+        if (roles[i] == NrrdRole::time) {
             frames = n;
             check_frame(options.frame, n, path);
             other.index = options.frame;
             say_frame(options.frame, n, kinds[i].empty() ? "the axis beside space" : kinds[i].c_str(), v.decisions);
         } else {
-            if (roles[i] == Role::foreign && !options.channel)
+            if (roles[i] == NrrdRole::foreign && !options.channel)
                 bad_file(path, "each voxel has {} values (NRRD kind \"{}\"): clvr renders scalar volumes, --channel N takes one of them", n,
                          lower_case(kinds[i]));
             channels = n;

@@ -58,7 +58,7 @@ std::map<std::string, std::string> dictionary(std::string_view text, const std::
     return values;
 }
 
-NumpyHeader read_header(ByteStream& stream, const std::string& path) {
+NumpyHeader read_numpy_header(ByteStream& stream, const std::string& path) {
     std::string start(8, '\0');
     if (stream.read(start.data(), 8) < 8 || start.compare(0, 6, "\x93NUMPY") != 0)
         bad_file(path, "not a NumPy file: it does not start with \\x93NUMPY, or is truncated");
@@ -119,7 +119,7 @@ SampleType sample_type(const std::string& descr, bool& big, const std::string& p
 
 Voxels read_numpy(const std::string& path, const VolumeReadOptions& options) {
     ByteStream stream = open_inside(path);
-    const NumpyHeader h = read_header(stream, path);
+    const NumpyHeader h = read_numpy_header(stream, path);
     bool big = false;
     const SampleType type = sample_type(h.descr, big, path);
     const std::string shape = fmt::format("({})", fmt::join(h.shape, ", "));

@@ -13,7 +13,7 @@ namespace clvr {
 namespace {
 
 // No codec of libtiff packs a page tighter than this; zstd comes nearest.
-constexpr std::uint64_t greatest_ratio = 40000;
+constexpr std::uint64_t tiff_ratio = 40000;
 
 /// Codecs that occur in TIFF files; libtiff has only some of them.
 std::string codec_name(std::uint16_t compression) {
@@ -113,7 +113,7 @@ void decode_strips(const TiffFile& file, const TiffForm& form, std::uint16_t sam
 void decode_tiles(const TiffFile& file, const TiffForm& form, std::uint16_t sample, unsigned char* to) {
     const Pieces tile = pieces_of(file, form);
     const std::uint64_t row_bytes = form.row_bytes(tile.width), size = sample_bytes(form.type), tile_bytes = row_bytes * tile.height;
-    check_capacity(tile_bytes, file.size() * greatest_ratio, file.path());
+    check_capacity(tile_bytes, file.size() * tiff_ratio, file.path());
     const auto whole = static_cast<tmsize_t>(tile_bytes);
     if (TIFFTileSize(file.get()) != whole) file.fail();
     std::vector<unsigned char> stored(tile_bytes);
@@ -192,7 +192,7 @@ void check_extents(const TiffFile& file, const TiffForm& form) {
         stored += bytes;
     }
     const bool plain = file.field<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_NONE;
-    check_capacity(page_bytes, plain ? stored : stored * greatest_ratio, file.path());
+    check_capacity(page_bytes, plain ? stored : stored * tiff_ratio, file.path());
 }
 
 void decode_page(const TiffFile& file, const TiffForm& form, std::uint16_t sample, unsigned char* to) {

@@ -15,7 +15,7 @@ namespace clvr {
 
 namespace {
 
-constexpr std::size_t header_bytes = 352; // 348 and the mark of no extension
+constexpr std::size_t nifti_header_bytes = 352; // 348 and the mark of no extension
 
 short datatype_of(VoxelType t) {
     switch (t) {
@@ -33,8 +33,8 @@ short datatype_of(VoxelType t) {
     throw std::logic_error("voxel type");
 }
 
-std::array<unsigned char, header_bytes> header_of(const Voxels& v) {
-    std::array<unsigned char, header_bytes> h{};
+std::array<unsigned char, nifti_header_bytes> header_of(const Voxels& v) {
+    std::array<unsigned char, nifti_header_bytes> h{};
     const auto put = [&](std::size_t at, auto value) { std::memcpy(h.data() + at, &value, sizeof value); };
     put(0, std::int32_t{348});
     put(40, std::int16_t{3});
@@ -46,7 +46,7 @@ std::array<unsigned char, header_bytes> header_of(const Voxels& v) {
     put(70, datatype_of(v.type));
     put(72, static_cast<std::int16_t>(8 * voxel_bytes(v.type)));
     put(76, 1.0f);
-    put(108, static_cast<float>(header_bytes));
+    put(108, static_cast<float>(nifti_header_bytes));
     put(112, static_cast<float>(v.slope));
     put(116, static_cast<float>(v.intercept));
     h[123] = 2;                // millimetres
@@ -67,7 +67,7 @@ std::array<unsigned char, header_bytes> header_of(const Voxels& v) {
 
 void write_compressed(const std::string& path, const void* header, const std::vector<unsigned char>& bytes) {
     const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "wb4"), gzclose);
-    bool good = file && gzwrite(file.get(), header, header_bytes) == static_cast<int>(header_bytes);
+    bool good = file && gzwrite(file.get(), header, nifti_header_bytes) == static_cast<int>(nifti_header_bytes);
     constexpr std::size_t piece = std::size_t{64} << 20;
     for (std::size_t at = 0; good && at < bytes.size(); at += piece) {
         const auto n = static_cast<unsigned>(std::min(piece, bytes.size() - at));
@@ -89,11 +89,11 @@ void write_nifti(const Voxels& v, const std::string& path) {
     for (const int n : v.dims)
         if (n < 1 || n > 32767)
             throw Error(ErrorKind::input, fmt::format("has {} voxels along an axis; NIfTI-1 holds 1 to 32767", n), path);
-    const std::array<unsigned char, header_bytes> header = header_of(v);
+    const std::array<unsigned char, nifti_header_bytes> header = header_of(v);
     write_atomically(path, [&](const std::string& temporary) {
         if (ends_with(path, ".gz")) return write_compressed(temporary, header.data(), v.bytes);
         std::ofstream out(temporary, std::ios::binary);
-        out.write(reinterpret_cast<const char*>(header.data()), header_bytes);
+        out.write(reinterpret_cast<const char*>(header.data()), nifti_header_bytes);
         out.write(reinterpret_cast<const char*>(v.bytes.data()), static_cast<std::streamsize>(v.bytes.size()));
         out.close();
         if (!out) throw Error(ErrorKind::input, "cannot be written; is the disk full?", path);

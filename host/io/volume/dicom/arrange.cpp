@@ -11,7 +11,6 @@ namespace clvr {
 namespace {
 
 using Frames = std::vector<DicomFrame>;
-constexpr double same_place_mm = 1e-3;
 
 /// The last decimal of positions along the normal [mm]; the finest text of each coordinate counts, as zeros at the end may be missing.
 double rounding_along(const Frames& frames, const std::vector<std::size_t>& stack, const Double3& normal) {

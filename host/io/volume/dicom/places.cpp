@@ -10,7 +10,6 @@ namespace clvr {
 namespace {
 
 using Frames = std::vector<DicomFrame>;
-constexpr double same_place_mm = 1e-3;
 
 auto order_in_place(const DicomFrame& f) { return std::make_tuple(f.image->acquisition, f.time, f.image->instance, f.number); }
 

@@ -8,6 +8,9 @@
 
 namespace clvr {
 
+/// Positions this near to one another [mm] are the same place.
+constexpr double same_place_mm = 1e-3;
+
 /// The slices at one place along the normal [mm]: indices of frames.
 struct SlicesAtPlace {
     double along;
