@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/install_packages.sh test
-cmake --preset release -DCLVR_TESTS=ON
+cmake --preset release -DCLVR_TESTS=ON -DCMAKE_UNITY_BUILD=ON # files compiled by eights: headers cost more than what includes them
 cmake --build --preset release
 [ $# -gt 0 ] || tools/fuzz.sh 1
 ctest --preset release -j "$(nproc)" "$@"
