@@ -13,7 +13,7 @@ shift || true
 
 compiler=()
 command -v clang++-14 >/dev/null || compiler=(-DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++)
-cmake --preset fuzz "${compiler[@]}" >/dev/null
+cmake --preset fuzz -DCMAKE_UNITY_BUILD=ON "${compiler[@]}" >/dev/null
 cmake --build --preset fuzz
 
 run=$PWD/build/fuzz/run

@@ -8,8 +8,6 @@
 namespace clvr {
 namespace {
 
-constexpr double radian = 3.14159265358979323846 / 180;
-
 /// Corners of an oblique box, off the origin.
 std::vector<Double3> corners() {
     Geometry g;
