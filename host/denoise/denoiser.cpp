@@ -1,5 +1,6 @@
 #include "host/denoise/denoiser.hpp"
 #include "host/denoise/neural_grid.hpp"
+#include "host/denoise/tunables.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -58,8 +59,7 @@ struct Denoiser::State {
 
     /// Rows and columns of a tile's inner part: the whole picture where it fits in the budget, else whole rows, then parts of rows.
     Region tile(int width, int height, bool show) const {
-        // 1080p stays below 400 MB in two tiles, which costs 7 % more pixels; larger tiles are not faster.
-        const std::size_t mib = 1 << 20, tunable = static_cast<std::size_t>(device.tunable("denoise_mib", 380)) * mib;
+        const std::size_t mib = 1 << 20, tunable = static_cast<std::size_t>(device.tunable(tunables::denoise_mib)) * mib;
         const std::size_t kept = grid ? tile_bytes({0, 0, shape.width, shape.height}, shape.show) : 0;
         const std::size_t budget = std::min(tunable, (device.free_bytes() + kept) / 8 * 7);
         Region t{0, 0, width, height};
