@@ -1,8 +1,8 @@
 // The `clvr` program: parses the words, which runs a command.
 #include "host/cli/first_word.hpp"
-#include "host/cli/nearest.hpp"
 #include "host/cli/program.hpp"
 #include "runtime/error.hpp"
+#include "runtime/nearest.hpp"
 #include "runtime/program_end.hpp"
 
 #include <fmt/format.h>

@@ -21,6 +21,8 @@ namespace {
 /// Events kept before the older half is waited for and read.
 constexpr std::size_t max_pending_events = 1024;
 
+constexpr std::size_t most_on_a_processor = 256; // work-items in a group
+
 std::size_t rounded_up(std::size_t value, std::size_t multiple) { return (value + multiple - 1) / multiple * multiple; }
 
 } // namespace
@@ -105,14 +107,22 @@ Device Device::open(const DeviceFacts& facts, bool relaxed) {
 
 const DeviceFacts& Device::facts() const { return state_->facts; }
 
-int Device::tunable(const std::string& name, int fallback) const {
-    const auto found = state_->tunables.find(name);
-    return found == state_->tunables.end() ? fallback : found->second;
+int Device::tunable(const Tunable& tunable) const { return value_of(tunable, state_->facts, state_->tunables); }
+
+int Device::tunable(const Tunable& tunable, int by_stage) const {
+    const auto found = state_->tunables.find(tunable.name);
+    return found == state_->tunables.end() ? by_stage : found->second;
 }
 
-void Device::set_tunable(const std::string& name, int value) { state_->tunables[name] = value; }
+void Device::set_tunable(const std::string& name, int value) {
+    if (const std::string why = why_refused(name, value); !why.empty()) throw Error(ErrorKind::usage, why, "set_tunable");
+    state_->tunables[name] = value;
+}
 
-void Device::set_tunables(const std::map<std::string, int>& all) { state_->tunables = all; }
+void Device::set_tunables(const Tunables& all) {
+    state_->tunables.clear();
+    for (const auto& [name, value] : all) set_tunable(name, value);
+}
 
 std::size_t Device::max_alloc_bytes() const { return std::min(state_->max_alloc_bytes, state_->max_memory_bytes); }
 
@@ -191,6 +201,7 @@ Kernel Device::kernel(const std::string& stage, const Defines& defines) {
     cl_check(state_->doing("entry point " + kernel.label_), [&] {
         kernel.handle_ = cl::Kernel(found->second, kernel.label_.c_str());
         kernel.max_local_items_ = kernel.handle_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->facts.handle);
+        if (state_->facts.type == DeviceType::cpu) kernel.max_local_items_ = std::min(kernel.max_local_items_, most_on_a_processor);
     });
     return kernel;
 }

@@ -4,6 +4,7 @@
 #include "runtime/facts.hpp"
 #include "runtime/opencl.hpp"
 #include "runtime/profile.hpp"
+#include "runtime/tunables.hpp"
 
 #include <cstddef>
 #include <map>
@@ -65,10 +66,15 @@ public:
     Kernel() = default;
     const std::string& label() const { return label_; }
     /// Most work-items in a group of this kernel on its device: at most the device's own limit, less where registers or private memory are
-    /// short.
+    /// short; at most 256 on processors, as PoCL has a group's private memory on a stack of 8 MiB and more gain nothing.
     std::size_t max_local_items() const { return max_local_items_; }
     /// A one-dimensional local size: `wanted`, or what this kernel takes at most on its device.
     Range group(std::size_t wanted) const { return {wanted < max_local_items_ ? wanted : max_local_items_}; }
+    /// A local size: `wanted`, halved until this kernel takes it (rusticl on llvmpipe: 32), y before x.
+    Range group(Range wanted) const {
+        while (wanted.x * wanted.y > max_local_items_ && wanted.x * wanted.y > 1) (wanted.y > 1 ? wanted.y : wanted.x) /= 2;
+        return wanted;
+    }
 
 private:
     friend class Device;
@@ -86,11 +92,13 @@ public:
 
     const DeviceFacts& facts() const;
 
-    /// Tunables (speed only, never bits): packet width and such. `tunable` returns the value in force (runtime/tuning.hpp) or set since,
-    /// else `fallback`. `set_tunables` replaces all, whatever was in force.
-    int tunable(const std::string& name, int fallback) const;
+    /// The value of a tunable: the one in force (runtime/tuning.hpp) or set since, else its default, or `by_stage` where the stage chooses
+    /// by the shape of its work. `set_tunables` replaces all, whatever was in force. Setting throws Error{usage} for a name or a value that
+    /// is not declared.
+    int tunable(const Tunable& tunable) const;
+    int tunable(const Tunable& tunable, int by_stage) const;
     void set_tunable(const std::string& name, int value);
-    void set_tunables(const std::map<std::string, int>& all);
+    void set_tunables(const Tunables& all);
 
     /// Largest single allocation and what is left of the total in bytes, by clvr's own account
     /// (device limits, lowered by CLVR_MAX_ALLOC, CLVR_MAX_MEMORY and set_memory_limit()).

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <mutex>
+#include <set>
 #include <unistd.h>
 
 namespace clvr {
@@ -35,6 +37,13 @@ std::optional<fs::path> cache_folder() {
                      "to a writable folder",
                      folder ? folder->string() : "(HOME is not set)");
     return std::nullopt;
+}
+
+void warn_of_ignored_file(const Error& error) {
+    static std::mutex mutex;
+    static std::set<std::string> warned;
+    const std::lock_guard lock(mutex);
+    if (warned.insert(error.line()).second) spdlog::warn("{}; clvr goes on without it", error.line());
 }
 
 std::optional<fs::path> config_folder() { return xdg_folder("XDG_CONFIG_HOME", ".config"); }

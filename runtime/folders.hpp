@@ -1,5 +1,7 @@
 // Where clvr keeps files of its own (XDG base directories), and how it reads and replaces them.
 #pragma once
+#include "runtime/error.hpp"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,6 +21,9 @@ bool writable_folder(const std::filesystem::path& folder);
 
 /// The whole file, or nothing when it cannot be read.
 std::optional<std::string> load_file(const std::filesystem::path& path);
+
+/// Warns that a file of clvr's own is ignored because of this error: each line once in the life of the process.
+void warn_of_ignored_file(const Error& error);
 
 /// Writes beside `path` under a name that nobody else uses, then renames: readers see either the old file or the new one. Returns false
 /// when that fails; then nothing is left behind.

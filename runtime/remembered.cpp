@@ -41,23 +41,25 @@ std::optional<std::vector<RememberedDevice>> load_remembered(const std::string& 
     const auto path = remembered_path();
     const auto text = path ? load_file(*path) : std::nullopt;
     if (!text) return std::nullopt;
-    const Error no_list(ErrorKind::input,
-                        "is not a list of devices as clvr-bench --save writes it; delete the file or run clvr-bench --save",
-                        path->string());
+    std::vector<RememberedDevice> devices;
+    const auto ignored = [&](const char* why) {
+        warn_of_ignored_file({ErrorKind::input, why, path->string()});
+        return std::nullopt;
+    };
+    constexpr const char* no_list = "is not a list of devices as clvr-bench --save writes it; delete the file or run clvr-bench --save";
     try {
         const auto json = nlohmann::json::parse(*text);
         const bool by_task = json.contains("tasks") && json.at("tasks").contains(task);
-        std::vector<RememberedDevice> devices;
         for (const nlohmann::json& entry : by_task ? json.at("tasks").at(task) : json.at("devices")) {
             const auto occurrence = count_of(entry, "occurrence"), sub_devices = count_of(entry, "sub_devices");
-            if (!occurrence || !sub_devices) throw no_list;
+            if (!occurrence || !sub_devices) return ignored(no_list);
             devices.push_back({entry.at("platform"), entry.at("name"), *occurrence, *sub_devices});
         }
-        if (devices.empty()) throw Error(ErrorKind::input, "names no device; delete the file or run clvr-bench --save", path->string());
-        return devices;
     } catch (const nlohmann::json::exception&) {
-        throw no_list;
+        return ignored(no_list);
     }
+    if (devices.empty()) return ignored("names no device; delete the file or run clvr-bench --save");
+    return devices;
 }
 
 void save_remembered(const std::vector<RememberedDevice>& devices, const RememberedByTask& by_task) {

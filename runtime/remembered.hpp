@@ -20,8 +20,7 @@ struct RememberedDevice {
 /// Devices by task, such as "render".
 using RememberedByTask = std::map<std::string, std::vector<RememberedDevice>>;
 
-/// What is kept for the task, else for all; nothing when there is no such file. Throws Error{input} naming the file when it cannot be
-/// understood.
+/// What is kept for the task, else for all; nothing when there is no such file, or, with a warning, none that can be understood.
 std::optional<std::vector<RememberedDevice>> load_remembered(const std::string& task = {});
 
 /// Keeps the choice for all tasks but those of `by_task`. Throws Error{input} naming the file when it cannot be written.

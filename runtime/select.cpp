@@ -3,6 +3,7 @@
 #include "runtime/error.hpp"
 #include "runtime/icd.hpp"
 #include "runtime/speed.hpp"
+#include "runtime/tuning.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -71,6 +72,7 @@ Choice choose_devices(const std::vector<PlatformFacts>& platforms, const Wishes&
 }
 
 Selection select_devices(const std::string& selector, const std::string& task) {
+    tunables_from_environment(); // what it refuses is said before devices are tried
     const char* environment = std::getenv("CLVR_DEVICE");
     const std::vector<PlatformFacts> platforms = list_platforms();
     if (platforms.empty()) refuse_without_platform(unloadable_drivers());

@@ -8,39 +8,33 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <mutex>
-#include <set>
+#include <limits>
 #include <sstream>
 
 namespace clvr {
 namespace {
 
 constexpr const char* format = "clvr tuning 1";
-constexpr std::int64_t largest_value = std::int64_t{1} << 30;
 
-bool is_name(const std::string& name) {
-    return !name.empty() &&
-           std::all_of(name.begin(), name.end(), [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
-}
-
-/// In 0..2^30.
-bool is_value(const nlohmann::json& value) {
-    return value.is_number_integer() && value.get<std::int64_t>() >= 0 && value.get<std::int64_t>() <= largest_value;
+/// A whole number that an int holds.
+bool is_int(const nlohmann::json& value) {
+    return value.is_number_integer() && value.get<std::int64_t>() >= std::numeric_limits<int>::min() &&
+           value.get<std::int64_t>() <= std::numeric_limits<int>::max() &&
+           !(value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{1} << 62);
 }
 
 /// The members "tunables" and "evidence" of a file. Throws Error{input}.
 Tuning tuning_of(const nlohmann::json& json, const std::string& where) {
     Tuning tuning;
     for (const auto& [name, value] : json.at("tunables").items()) {
-        if (!is_name(name) || !is_value(value)) {
+        if (!is_int(value)) {
             const std::string found = value.is_number() ? value.dump() : value.type_name(); // a text or a list may have any size and depth
-            throw Error(ErrorKind::input, fmt::format("\"{}\": {} is no tunable with a whole number within -2^30..2^30", name, found),
-                        where);
+            throw Error(ErrorKind::input, fmt::format("\"{}\" is {}, but must be a whole number", name, found), where);
         }
+        if (const std::string why = why_refused(name, value.get<int>()); !why.empty()) throw Error(ErrorKind::input, why, where);
         tuning.values[name] = value.get<int>();
     }
     if (json.contains("evidence"))
@@ -70,11 +64,20 @@ Tunables parse_tunables(const std::string& text, const std::string& where) {
         const std::size_t start = equals == std::string::npos ? item.size() : equals + 1;
         char* end = nullptr;
         const long value = std::strtol(item.c_str() + start, &end, 10);
-        if (equals == 0 || end == item.c_str() + start || *end || value < -largest_value || value > largest_value)
-            throw Error(ErrorKind::usage, fmt::format("\"{}\" is not name=value with a whole number within -2^30..2^30", item), where);
-        tunables[item.substr(0, equals)] = static_cast<int>(value);
+        if (equals == 0 || end == item.c_str() + start || end != item.c_str() + item.size())
+            throw Error(ErrorKind::usage, fmt::format("\"{}\" is not name=value with a whole number", item), where);
+        const std::string name = item.substr(0, equals);
+        constexpr long least = std::numeric_limits<int>::min(), most = std::numeric_limits<int>::max();
+        const int number = static_cast<int>(std::clamp(value, least, most)); // no tunable may be either
+        if (const std::string why = why_refused(name, number); !why.empty()) throw Error(ErrorKind::usage, why, where);
+        tunables[name] = number;
     }
     return tunables;
+}
+
+Tunables tunables_from_environment() {
+    const char* text = std::getenv("CLVR_TUNE");
+    return text ? parse_tunables(text, "CLVR_TUNE") : Tunables();
 }
 
 Tuning parse_tuning(const std::string& text, const std::string& where) {
@@ -101,10 +104,7 @@ std::optional<Tuning> measured_tuning(const DeviceFacts& device) {
         if (!text) throw Error(ErrorKind::input, "cannot be read; check its permissions", path->string());
         return parse_tuning(*text, path->string());
     } catch (const Error& error) {
-        static std::mutex mutex;
-        static std::set<std::string> warned;
-        const std::lock_guard lock(mutex);
-        if (warned.insert(error.line()).second) spdlog::warn("{}; clvr goes on without it", error.line());
+        warn_of_ignored_file(error);
         return std::nullopt;
     }
 }
@@ -131,7 +131,7 @@ bool ShippedTuning::fits(const DeviceFacts& device) const {
 ShippedTuning parse_shipped_tuning(const std::string& text, const std::string& where) {
     return read_json(text, where, [&](const nlohmann::json& json) {
         const nlohmann::json& match = json.at("match");
-        if (match.contains("native_float_width") && !is_value(match.at("native_float_width")))
+        if (match.contains("native_float_width") && !match.at("native_float_width").is_number_unsigned())
             throw Error(ErrorKind::input, "\"native_float_width\" is no whole number of 0 or more", where);
         return ShippedTuning{json.at("name"), match.at("platform"), match.at("type"), match.value("native_float_width", 0u),
                              tuning_of(json, where)};
@@ -155,7 +155,7 @@ TuningInForce tuning_in_force(const DeviceFacts& device) {
         tuning.values.insert(values.begin(), values.end());
         parts.push_back(from);
     };
-    if (const char* text = std::getenv("CLVR_TUNE"); text && *text) take(parse_tunables(text, "CLVR_TUNE"), "the environment's CLVR_TUNE");
+    if (const Tunables asked = tunables_from_environment(); !asked.empty()) take(asked, "the environment's CLVR_TUNE");
     if (const auto measured = measured_tuning(device)) take(measured->values, "measured here by clvr-bench --tune");
     if (const auto shipped = shipped_tuning(device)) take(shipped->tuning.values, "shipped for " + shipped->name);
     tuning.rule = parts.empty() ? "built in, nothing measured yet (clvr-bench --tune)" : joined(parts);

@@ -1,18 +1,15 @@
 // The values of tunables on a device, in this order: CLVR_TUNE, what `clvr-bench --tune` measured here ($XDG_CONFIG_HOME/clvr/tuning/, a
-// file per device and driver), what clvr ships (datasets/tuning/, embedded), the code's own fallbacks. They change speed only, never bits.
+// file per device and driver), what clvr ships (datasets/tuning/, embedded), the declared defaults (runtime/tunables.hpp).
 #pragma once
 #include "runtime/facts.hpp"
+#include "runtime/tunables.hpp"
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace clvr {
-
-/// Name -> value; a name without a value keeps the code's fallback.
-using Tunables = std::map<std::string, int>;
 
 /// What a tuning file holds.
 struct Tuning {
@@ -20,17 +17,20 @@ struct Tuning {
     std::vector<std::string> evidence; ///< a line a measurement, for people
 };
 
-/// "name=value,name=value" as CLVR_TUNE has it. Throws Error{usage} naming `where`.
+/// "name=value,name=value" as CLVR_TUNE has it. Throws Error{usage} naming `where`, also for what is not declared.
 Tunables parse_tunables(const std::string& text, const std::string& where);
 
-/// The text of a tuning file. Throws Error{input} naming `where` when it is no such file or a value is no whole number from 0 to 2^30.
+/// What CLVR_TUNE says; nothing where it is not set. Throws Error{usage}.
+Tunables tunables_from_environment();
+
+/// The text of a tuning file. Throws Error{input} naming `where` when it is no such file, or a name or value is not declared.
 Tuning parse_tuning(const std::string& text, const std::string& where);
 
 /// Where the measured tuning of this device and driver is kept, there or not; nothing without a configuration folder.
 std::optional<std::filesystem::path> tuning_path(const DeviceFacts& device);
 
-/// The measured tuning; nothing where none is kept. A file that cannot be read or understood is ignored with a warning (once per process):
-/// no run should fail because of a tuning.
+/// The measured tuning; nothing where none is kept. A file that cannot be read or understood is ignored with a warning: no run should fail
+/// because of a tuning.
 std::optional<Tuning> measured_tuning(const DeviceFacts& device);
 
 /// Keeps a measured tuning for the next runs. Throws Error{input} naming the file when it cannot be written.

@@ -1,5 +1,6 @@
 #include "host/denoise/denoiser.hpp"
 #include "host/denoise/neural_grid.hpp"
+#include "host/denoise/tunables.hpp"
 #include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
 
@@ -85,13 +86,13 @@ struct Denoiser::State {
     /// Bytes that a tile may take beside a picture of `held` bytes: 1080p stays below 400 MB in all.
     std::size_t tile_budget(std::size_t held) const {
         const std::size_t kept = grid ? tile_bytes({0, 0, shape.width, shape.height}, shape.show) : 0,
-                          most = static_cast<std::size_t>(device.tunable("denoise_mib", 380)) << 20;
+                          most = static_cast<std::size_t>(device.tunable(tunables::denoise_mib)) << 20;
         return std::min(std::max(most > held ? most - held : 0, most / 2), (device.free_bytes() + kept) / 8 * 7);
     }
 
     /// Bytes that the part of a picture on the device may take.
     std::size_t window_budget() const {
-        const std::size_t half = static_cast<std::size_t>(device.tunable("denoise_mib", 380)) << 19, least = std::size_t{64} << 20;
+        const std::size_t half = static_cast<std::size_t>(device.tunable(tunables::denoise_mib)) << 19, least = std::size_t{64} << 20;
         return std::min(std::max(half, least), device.free_bytes() / 16 * 7);
     }
 

@@ -1,22 +1,27 @@
 #include "host/denoise/neural_grid.hpp"
+#include "host/denoise/tunables.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <numeric>
 
 namespace clvr {
 
 namespace {
 
 bool is_cpu(const Device& device) { return device.facts().type == DeviceType::cpu; }
-int conv_width(const Device& device) { return device.tunable("conv_width", is_cpu(device) ? 16 : 1); }
+int conv_width(const Device& device) { return device.tunable(tunables::conv_width); }
 /// Vectors of a row that a work-item takes: 5, or 4 where that fills rows of this width better.
 int conv_vectors(const Device& device, int row_width) {
     const auto padded = [&](int vectors) { return (row_width - 1) / (conv_width(device) * vectors) * vectors; };
-    return device.tunable("conv_vectors", padded(5) <= padded(4) ? 5 : 4);
+    return device.tunable(tunables::conv_vectors, padded(5) <= padded(4) ? 5 : 4);
 }
-Range conv_group(const Device& device) {
-    const auto x = static_cast<std::size_t>(device.tunable("conv_group_x", conv_width(device) == 1 ? 32 : 1));
-    return {x, static_cast<std::size_t>(device.tunable("conv_group_y", 4))};
+/// Pixels of a row that a work-item takes.
+int conv_step(const Device& device, int row_width) { return conv_width(device) * conv_vectors(device, row_width); }
+Range conv_group(const Device& device, int row_width) {
+    auto x = static_cast<std::size_t>(device.tunable(tunables::conv_group_x));
+    while (x > 1 && conv_step(device, row_width) * static_cast<int>(x / 2) >= row_width) x /= 2; // more would only pad the row
+    return {x, static_cast<std::size_t>(device.tunable(tunables::conv_group_y))};
 }
 
 int round_up(int n, int multiple) { return (n + multiple - 1) / multiple * multiple; }
@@ -31,13 +36,13 @@ int channels_at_once(int channels, int most) {
 
 int Convolution::row_granularity(const Device& device, int row_width) {
     // Also a multiple of 16, the lanes of the weight gradients.
-    return std::max(16, conv_width(device) * conv_vectors(device, row_width) * static_cast<int>(conv_group(device).x));
+    return std::lcm(16, conv_step(device, row_width) * static_cast<int>(conv_group(device, row_width).x));
 }
 
 Convolution::Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
                          bool mirrored, int row_width)
-    : group_(conv_group(device)), in_(in), out_(out), size_(kernel) {
-    const int block = channels_at_once(out, device.tunable("conv_block", 5)), width = conv_width(device),
+    : in_(in), out_(out), size_(kernel) {
+    const int block = channels_at_once(out, device.tunable(tunables::conv_block)), width = conv_width(device),
               vectors = conv_vectors(device, row_width);
     step_ = width * vectors;
     kernel_ = device.kernel(stage, {{"CLVR_IN", std::to_string(in)},
@@ -46,7 +51,7 @@ Convolution::Convolution(Device& device, const std::string& stage, int in, int o
                                     {"CLVR_WIDTH", std::to_string(width)},
                                     {"CLVR_VECTORS", std::to_string(vectors)},
                                     {"CLVR_BLOCK", std::to_string(block)}});
-    while (group_.x * group_.y > kernel_.max_local_items()) (group_.y > 1 ? group_.y : group_.x) /= 2; // rusticl on llvmpipe: 32
+    group_ = kernel_.group(conv_group(device, row_width));
     pack_ = device.kernel("denoise/pack_weights");
     const std::size_t taps = static_cast<std::size_t>(kernel) * kernel;
     std::vector<std::int32_t> from;
@@ -124,8 +129,7 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
     slice_ = device_.kernel(
         "denoise/slice", {{"CLVR_WIDTH", width}, {"CLVR_SHOW", shape.show ? "1" : "0"}, {"CLVR_KNOWN", model.control_variate ? "1" : "0"}});
     for (int l = 0; l < levels_; ++l) {
-        bins_.push_back(is_cpu(device_) ? params_.level[l].depth : 8);
-        bins_.back() = std::min(device_.tunable("splat_bins", bins_.back()), params_.level[l].depth);
+        bins_.push_back(std::min(device_.tunable(tunables::splat_bins), params_.level[l].depth));
         for (auto [kernels, sums] : {std::pair(&splat_, "0"), {&sum_, "1"}})
             kernels->push_back(device_.kernel("denoise/splat", {{"CLVR_WIDTH", width},
                                                                 {"CLVR_BINS", std::to_string(bins_.back())},
@@ -166,7 +170,7 @@ Range NeuralGrid::pixel_items(int images) const {
 }
 
 Range NeuralGrid::pixel_group() const {
-    const auto x = static_cast<std::size_t>(device_.tunable("pixel_group", pixel_width(device_) == 1 ? 32 : 4));
+    const auto x = static_cast<std::size_t>(device_.tunable(tunables::pixel_group));
     return {x, is_cpu(device_) ? 1u : 4u};
 }
 
@@ -193,7 +197,7 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
     const shared::int4 from{first, source_pixel(1, 0) - first, source_pixel(0, 1) - first, n};
     const auto size = static_cast<cl_uint>(source_width) * static_cast<cl_uint>(source_height);
     // Turned images are read down their columns: 16 rows at once find what they share in the first-level cache (10 % on PoCL).
-    device_.launch(assemble_, pixel_items(1), is_cpu(device_) ? Range{1, 16} : pixel_group(),
+    device_.launch(assemble_, pixel_items(1), assemble_.group(is_cpu(device_) ? Range{1, 16} : pixel_group()),
                    {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, params, source, size,
                    from, channels ? *channels : channel_list_, input_, splatted_, remodulation_, target_, known_);
 }
@@ -201,16 +205,16 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
 void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {
     const shared::GridLevel& l = params_.level[level];
     const auto runs = static_cast<std::size_t>((l.depth + bins_[level] - 1) / bins_[level]);
-    const Range group = is_cpu(device_) ? Range{1} : Range{32, 4};
+    Kernel& kernel = sums ? sum_[level] : splat_[level];
+    const Range group = is_cpu(device_) ? Range{1} : kernel.group(Range{32, 4});
     const double count = static_cast<double>(params_.width) * params_.height * images;
-    device_.launch(sums ? sum_[level] : splat_[level],
-                   {static_cast<std::size_t>(l.columns) * runs, static_cast<std::size_t>(l.rows), static_cast<std::size_t>(images)}, group,
-                   {count * 20 + 16.0 * l.rows * l.columns * l.depth * images, 0}, params_buffer_, level, 2 * levels_ - 1, outputs_, pixels,
-                   first_image, cells);
+    device_.launch(kernel, {static_cast<std::size_t>(l.columns) * runs, static_cast<std::size_t>(l.rows), static_cast<std::size_t>(images)},
+                   group, {count * 20 + 16.0 * l.rows * l.columns * l.depth * images, 0}, params_buffer_, level, 2 * levels_ - 1, outputs_,
+                   pixels, first_image, cells);
 }
 
 void NeuralGrid::slice(int images) {
-    device_.launch(slice_, pixel_items(images), pixel_group(),
+    device_.launch(slice_, pixel_items(images), slice_.group(pixel_group()),
                    {static_cast<double>(params_.width) * params_.height * images * (48 + 128 * levels_), 0}, params_buffer_, outputs_,
                    cells_, remodulation_, known_, result_);
 }

@@ -90,10 +90,10 @@ public:
     /// A plane without its border, [height * width], from planes of so many channels.
     std::vector<float> download(const Buffer& planes, int channels, int image, int channel);
 
-    /// Work-items and group of a kernel over all pixels, pixel_width() of a row each.
+    /// Work-items of a kernel over all pixels, pixel_width() of a row each; the group to ask it for (Kernel::group).
     Range pixel_items(int images) const;
     Range pixel_group() const;
-    /// Pixels of a row that a work-item takes: a tunable, 16 on CPUs, 1 on GPUs.
+    /// Pixels of a row that a work-item takes (tunable conv_width).
     static int pixel_width(const Device& device);
 
 private:

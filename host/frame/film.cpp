@@ -1,18 +1,11 @@
 #include "host/frame/film.hpp"
 #include "runtime/dealer.hpp"
 
-#include <algorithm>
-
 namespace clvr {
 
 bool Film::is_on(const Device& device) const {
     Device mine = device_, other = device;
     return is_same(mine, other);
-}
-
-int Film::find(const std::string& name) const {
-    const auto at = std::find(names_.begin(), names_.end(), name);
-    return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
 }
 
 int Film::require(const std::vector<std::string>& names) {

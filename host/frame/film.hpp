@@ -3,6 +3,7 @@
 #include "host/frame/frame.hpp"
 #include "runtime/device.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,10 @@ public:
     bool is_on(const Device& device) const;
 
     /// Number of the plane, -1 when there is none.
-    int find(const std::string& name) const;
+    int find(const std::string& name) const {
+        const auto at = std::find(names_.begin(), names_.end(), name);
+        return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
+    }
     /// Number of the first of the planes `names`, which lie next to each other in this order; makes them (what they hold is undefined)
     /// behind the others where none is there. Throws Error{memory}; Error{internal} when they lie otherwise.
     int require(const std::vector<std::string>& names);

@@ -1,5 +1,6 @@
 #include "host/render/device_volume.hpp"
 #include "host/render/coarse_opacity.hpp"
+#include "host/render/tunables.hpp"
 
 #include <string>
 
@@ -23,30 +24,17 @@ const char* opencl_type(VoxelType t) {
     return "uchar";
 }
 
-[[noreturn]] void refuse_tunable(const std::string& name, int value, const std::string& expected) {
-    throw Error(ErrorKind::usage, "is " + std::to_string(value) + "; expected " + expected, "tunable " + name);
-}
-
 constexpr std::size_t upload_piece = std::size_t{4} << 20; // [bytes]: the host never holds a second copy of the volume
 
 } // namespace
 
-int packet_width(const Device& device) {
-    const DeviceFacts& f = device.facts();
-    const int fallback = f.type != DeviceType::cpu || f.simulator ? 1 : f.native_float_width >= 16 ? 16 : f.native_float_width >= 8 ? 8 : 4;
-    const int width = device.tunable("packet", fallback);
-    if (width != 1 && width != 4 && width != 8 && width != 16) refuse_tunable("packet", width, "1, 4, 8 or 16");
-    return width;
-}
+int packet_width(const Device& device) { return device.tunable(tunables::packet); }
 
-std::size_t packet_group(const Device& device, int width) {
-    return static_cast<std::size_t>(device.tunable("packet_group", width > 1 || device.facts().simulator ? 1 : 64));
-}
+std::size_t packet_group(const Device& device) { return static_cast<std::size_t>(device.tunable(tunables::packet_group)); }
 
 BrickLayout device_layout(const Device& device, const Classified& c) {
     constexpr int usual = 5;
-    const int by_dims = brick_log2_edge(c.voxels->dims), log2_edge = by_dims == usual ? device.tunable("brick_log2", usual) : by_dims;
-    if (log2_edge < 2 || log2_edge > 8) refuse_tunable("brick_log2", log2_edge, "2 to 8");
+    const int by_dims = brick_log2_edge(c.voxels->dims), log2_edge = by_dims == usual ? device.tunable(tunables::brick_log2) : by_dims;
     const std::size_t most = device.max_alloc_bytes();
     // The apron at edge 32 adds at most 31 %; thin volumes are kept to what is visible.
     const double all = 1.31 * static_cast<double>(c.voxels->count()) * static_cast<double>(voxel_bytes(c.voxels->type));
@@ -106,7 +94,8 @@ DeviceAppearance::DeviceAppearance(Device& device, const Classified& c, const sh
     BufferList volume;
     append_to(volume);
     bricks.append_to(volume);
-    device.launch(kernel, cells, kernel.group(packet_group(device, 1)), {}, volume, visible_before, coarse_);
+    device.launch(kernel, cells, kernel.group(static_cast<std::size_t>(device.tunable(tunables::shade_group))), {}, volume, visible_before,
+                  coarse_);
     std::vector<float> mean = device.download<float>(coarse_, cells.x * cells.y * cells.z);
     mark_distances(mean, params.coarse);
     device.write(coarse_, mean.data(), mean.size() * sizeof(float));

@@ -76,11 +76,8 @@ private:
     DeviceAppearance appearance_;
 };
 
-/// The packet width of the trackers on a device: tunable "packet", default 16, 8 or 4 by the CPU's native vectors, 1 elsewhere and on
-/// simulators.
+/// Tunables of the packet kernels on a device: lanes, and work-items in a group.
 int packet_width(const Device& device);
-/// Work-items in a group of a kernel of so wide packets (1: of single paths): the tunable, else by device facts. An interpreter keeps what
-/// every instruction of a group computed until the group ends (Oclgrind: core/WorkItem.h, m_pool), so its groups have one work-item.
-std::size_t packet_group(const Device& device, int width);
+std::size_t packet_group(const Device& device);
 
 } // namespace clvr

@@ -58,8 +58,8 @@ SkyLight::SkyLight(Device& device, const DeviceVolume& volume, const SkySplit& s
     Defines defines = volume.defines();
     defines["CLVR_WIDTH"] = std::to_string(width);
     Kernel kernel = device.kernel("volume/sky_light", defines);
-    device.launch(kernel, items, kernel.group(packet_group(device, width)), {}, volume.arguments(), volume.coarse_opacity(), grid_,
-                  directions, radiance, light_);
+    device.launch(kernel, items, kernel.group(packet_group(device)), {}, volume.arguments(), volume.coarse_opacity(), grid_, directions,
+                  radiance, light_);
     device.finish(); // the directions go
 }
 

@@ -1,4 +1,5 @@
 #include "host/render/marcher.hpp"
+#include "host/render/tunables.hpp"
 
 #include <algorithm>
 #include <string>
@@ -6,8 +7,7 @@
 namespace clvr {
 
 std::uint32_t Marcher::pixels_per_launch(const Device& device) {
-    const bool cpu = device.facts().type == DeviceType::cpu;
-    return static_cast<std::uint32_t>(std::max(16, device.tunable("march_pixels", cpu ? 1 << 14 : 1 << 16)));
+    return static_cast<std::uint32_t>(device.tunable(tunables::march_pixels));
 }
 
 Marcher::Marcher(Device& device, const DeviceVolume& volume, const DeviceLights& light, const KeyLights& keys, const SkyLight& sky,
@@ -31,9 +31,11 @@ Marcher::Marcher(Device& device, const DeviceVolume& volume, const DeviceLights&
     march_ = device_.kernel("render/march", defines);
     place_ = device_.kernel("render/place");
 
-    const std::size_t sums = keys ? sizeof(float) * rays * CLVR_LIGHT_SUMS(keys->count()) : 0; // a pixel
+    // Bytes a pixel.
+    const std::size_t sums = keys ? sizeof(float) * rays * CLVR_LIGHT_SUMS(keys->count()) : 0, planes = sizeof(float) * count_;
     constexpr std::uint32_t least = 1024;
-    while (at_once_ > least && at_once_ * sums > std::min(device.free_bytes() / 2, device.max_alloc_bytes())) at_once_ /= 2;
+    while (at_once_ > least && at_once_ * std::max(sums, planes) > std::min(device.free_bytes() / 2, device.max_alloc_bytes()))
+        at_once_ /= 2;
     stride_ = (at_once_ + 15) / 16 * 16; // whole packets
     planes_ = device_.buffer(sizeof(float) * count_ * stride_, "feature planes");
     if (keys) sums_ = device_.buffer(sums * stride_, "light sums");
@@ -58,7 +60,7 @@ void Marcher::run(std::uint32_t first_pixel, std::uint32_t pixels, Film& film, i
 
 /// Into planes_.
 void Marcher::launch(std::uint32_t first, std::uint32_t pixels) {
-    const std::size_t group = packet_group(device_, width_);
+    const std::size_t group = packet_group(device_);
     const Range packets{(pixels + width_ - 1) / width_};
     if (!keys_) {
         device_.launch(march_, packets, march_.group(group), {}, volume_.arguments(), volume_.coarse_opacity(), light_.render(), first,

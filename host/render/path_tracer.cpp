@@ -1,5 +1,6 @@
 #include "host/render/path_tracer.hpp"
 #include "host/render/surface_lobe.hpp"
+#include "host/render/tunables.hpp"
 
 #include <algorithm>
 #include <string>
@@ -14,8 +15,7 @@ constexpr std::uint32_t compact_run = 64;
 /// Paths of a wave: the tunable, less where the picture has fewer or memory is short (half of what is left is for others).
 std::uint32_t wave_paths(const Device& device, std::uint32_t pixels) {
     constexpr std::size_t bytes_per_path = 8 + 6 * 16 + 4 * 4 + 2 * 16, least = 4096;
-    const bool cpu = device.facts().type == DeviceType::cpu;
-    std::size_t n = static_cast<std::size_t>(std::max(16, device.tunable("wave_paths", cpu ? 1 << 16 : 1 << 22)));
+    std::size_t n = static_cast<std::size_t>(device.tunable(tunables::wave_paths));
     n = std::min(n, std::size_t{pixels} * samples_per_wave);
     while (n > least && (n * bytes_per_path > device.free_bytes() / 2 || n * 16 > device.max_alloc_bytes())) n /= 2;
     return static_cast<std::uint32_t>(n);
@@ -32,13 +32,13 @@ PixelSums::PixelSums(Device& device, std::uint32_t pixels)
 PathTracer::PathTracer(Device& device, const DeviceVolume& volume, const DeviceLights& light, std::uint32_t pixels)
     : device_(device), volume_(volume), light_(light), width_(packet_width(device)) {
     capacity_ = wave_paths(device, pixels);
-    run_ = std::max(1, device.tunable("packet_run", width_ == 1 ? 1 : 16));
-    per_packet_ = packet_group(device, width_);
-    per_path_ = static_cast<std::size_t>(device.tunable("shade_group", device.facts().simulator ? 1 : 64));
+    run_ = device.tunable(tunables::packet_run);
+    per_packet_ = packet_group(device);
+    per_path_ = static_cast<std::size_t>(device.tunable(tunables::shade_group));
     Defines packet = volume.defines(), scalar = volume.defines();
     packet["CLVR_WIDTH"] = std::to_string(width_);
     packet["CLVR_RUN"] = std::to_string(run_);
-    packet["CLVR_REFILL"] = std::to_string(std::clamp(device.tunable("packet_refill", width_ / 4), 1, width_));
+    packet["CLVR_REFILL"] = std::to_string(std::min(device.tunable(tunables::packet_refill), width_));
     scalar["CLVR_WIDTH"] = "1";
     camera_rays_ = device_.kernel("render/camera_rays", {{"CLVR_WIDTH", "1"}});
     free_flight_ = device_.kernel("render/free_flight", packet);

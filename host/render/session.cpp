@@ -1,5 +1,6 @@
 #include "host/render/session.hpp"
 #include "host/render/params.hpp"
+#include "host/render/tunables.hpp"
 #include "runtime/host_memory.hpp"
 #include "runtime/size.hpp"
 
@@ -277,8 +278,7 @@ bool RenderSession::trace_pass(int samples, int wanted, const RenderControl& con
     for (const std::size_t k : dealer_.left()) {
         const Worker& w = *workers_[k];
         const std::uint32_t wave = w.tracer->pixels_per_wave(static_cast<std::uint32_t>(samples)), least = std::max(16u, wave / 256 * 16);
-        portions[k] = {least,
-                       std::max(least, static_cast<std::uint32_t>(std::max(16, w.device.tunable("tile_pixels", static_cast<int>(wave)))))};
+        portions[k] = {least, std::max(least, static_cast<std::uint32_t>(w.device.tunable(tunables::tile_pixels, static_cast<int>(wave))))};
     }
     const auto before = static_cast<std::uint32_t>(samples_), added = static_cast<std::uint32_t>(samples);
     std::uint32_t done = 0;

@@ -1,4 +1,5 @@
 #include "host/train/gradients.hpp"
+#include "host/train/tunables.hpp"
 
 #include <algorithm>
 
@@ -9,9 +10,7 @@ namespace {
 constexpr std::size_t lanes = 16; // partial sums of every reduction, at every width
 
 /// Output channels that a work-item of weight_gradient takes.
-int block_of(const Device& device, int channels) {
-    return channels_at_once(channels, device.tunable("gradient_block", device.facts().type == DeviceType::cpu ? 5 : 10));
-}
+int block_of(const Device& device, int channels) { return channels_at_once(channels, device.tunable(tunables::gradient_block)); }
 
 std::size_t planes_bytes(const shared::DenoiseParams& p, std::size_t channels, int images) {
     return channels * p.plane * 4 * static_cast<std::size_t>(images);
@@ -112,13 +111,13 @@ void Gradients::backward(NeuralGrid& forward, int images, float share, const Buf
     device_.launch(sum_runs_, {n}, {1}, {4.0 * rows, 0}, row_losses_, patch_losses, static_cast<cl_uint>(first), static_cast<cl_uint>(n),
                    static_cast<cl_uint>(p.height), 1u, static_cast<cl_uint>(p.height));
 
-    device_.launch(slice_gradient_, all, forward.pixel_group(), {pixels * (48 + 144 * levels_), 0}, forward.params(), forward.outputs(),
-                   forward.cells(), forward.remodulation(), result_gradient_, upstream_, output_gradient_);
+    device_.launch(slice_gradient_, all, slice_gradient_.group(forward.pixel_group()), {pixels * (48 + 144 * levels_), 0}, forward.params(),
+                   forward.outputs(), forward.cells(), forward.remodulation(), result_gradient_, upstream_, output_gradient_);
     for (int l = 0; l < levels_; ++l) forward.splat(l, images, upstream_, l * images, cell_gradient_, true);
     const auto cells = static_cast<cl_uint>(n * p.cells);
     device_.launch(normalise_gradient_, {cells}, normalise_gradient_.group(64), {48.0 * cells, 0}, forward.cells(), cell_gradient_, cells);
-    device_.launch(guide_gradient_, all, forward.pixel_group(), {pixels * (16 + 280 * levels_), 0}, forward.params(), forward.outputs(),
-                   forward.cells(), cell_gradient_, forward.splatted(), upstream_, output_gradient_, nothing_);
+    device_.launch(guide_gradient_, all, guide_gradient_.group(forward.pixel_group()), {pixels * (16 + 280 * levels_), 0}, forward.params(),
+                   forward.outputs(), forward.cells(), cell_gradient_, forward.splatted(), upstream_, output_gradient_, nothing_);
     if (matrices)
         matrices->hidden_gradient(forward, images, output_gradient_, hidden_gradient_);
     else

@@ -1,4 +1,5 @@
 #include "host/train/replica.hpp"
+#include "host/train/tunables.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -33,9 +34,7 @@ int micro_batch_of(const Device& device, const Model& model, const StepConfig& c
             std::max(Gradients::largest_bytes(device, model, shape), by_matrices(c) ? MatrixLayers::largest_bytes(model, shape) : 0);
         return bytes <= device.free_bytes() / 2 && largest <= device.max_alloc_bytes();
     };
-    // 65536 pixels at once keep a CPU's caches (8 % faster than 8 times as many) and are enough to share between its cores; a large GPU is
-    // only filled by millions (about 500 bytes each).
-    const int pixels = device.tunable("micro_pixels", device.facts().type == DeviceType::cpu ? 1 << 16 : 1 << 22);
+    const int pixels = device.tunable(tunables::micro_pixels);
     int micro = std::min(c.batch, c.micro_batch > 0 ? c.micro_batch : std::max(1, pixels / (c.patch * c.patch)));
     while (micro > 1 && !fits(micro)) micro = (micro + 1) / 2;
     return micro;

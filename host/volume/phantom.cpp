@@ -1,6 +1,7 @@
 // Drives the kernels of kernels/volume/: lists the parts that matter to each cell of voxels, launches, converts to the type asked for.
 #include "host/volume/phantom.hpp"
 #include "host/volume/phantom_parts.hpp"
+#include "host/volume/tunables.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -154,9 +155,9 @@ Voxels make_phantom(Device& device, const std::string& name, const PhantomOption
     const int launch_cells = std::max(1, static_cast<int>(launch_voxels / slice_voxels / CLVR_CELL_Z)),
               launch_slices = launch_cells * CLVR_CELL_Z;
     const Buffer out = device.buffer(slice_voxels * std::min(launch_slices, dims[2]) * sizeof(std::int16_t), "phantom");
-    const int width = device.tunable("packet", device.facts().type == DeviceType::cpu ? 16 : 1);
+    const int width = device.tunable(tunables::packet);
     Kernel kernel = device.kernel("volume/" + made.kernel, {{"CLVR_WIDTH", std::to_string(width)}});
-    const Range group = kernel.group(static_cast<std::size_t>(device.tunable("phantom_group", width == 1 ? 64 : 1)));
+    const Range group = kernel.group(static_cast<std::size_t>(device.tunable(tunables::phantom_group)));
     for (int z = 0; z < dims[2]; z += launch_slices) {
         if (options.cancelled && *options.cancelled)
             throw Error(ErrorKind::interrupted, "interrupted while the volume was computed", v.source);

@@ -2,9 +2,9 @@
 #include "host/cli/described/help.hpp"
 #include "host/cli/described/option_text.hpp"
 #include "host/cli/first_word.hpp"
-#include "host/cli/nearest.hpp"
 #include "host/cli/program.hpp"
 #include "runtime/error.hpp"
+#include "runtime/nearest.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>

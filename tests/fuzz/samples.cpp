@@ -163,12 +163,12 @@ const std::map<std::string, Samples (*)()>& other_samples() {
         {"tuning",
          [] {
              return Samples{{"measured", R"({"format": "clvr tuning 1", "platform": "p", "platform_version": "1", "device": "d",
-                                             "driver_version": "3.1", "tunables": {"packet": 8, "zero": 0}, "evidence": ["packet 8: 1.2 x"]})"}};
+                                             "driver_version": "3.1", "tunables": {"packet": 8, "splat_bins": 7}, "evidence": ["packet 8: 1.2 x"]})"}};
          }},
         {"shipped_tuning", [] { return of_map(embedded_tuning()); }},
         {"tunables",
          [] {
-             return Samples{{"two", "packet=8,zero=0"}, {"one", "a=-1"}};
+             return Samples{{"two", "packet=8,splat_bins=7"}, {"one", "tile_pixels=100"}};
          }},
         {"remembered",
          [] {

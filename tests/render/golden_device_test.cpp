@@ -11,19 +11,10 @@ TEST(Golden, PicturesHaveTheirHashes) {
     }
 }
 
-TEST(Golden, PacketWidthsGiveTheSameBits) {
-    for (int width : {1, 4, 8, 16}) expect_golden("automatic", {{"packet", width}});
-}
-
 TEST(Golden, TilesAndWavesGiveTheSameBits) {
     for (int pixels : {16, 100, 1000}) expect_golden("automatic", {{"tile_pixels", pixels}});
     for (int paths : {64, 1000}) expect_golden("automatic", {{"wave_paths", paths}});
     expect_golden("phase", {{"wave_paths", 333}, {"tile_pixels", 50}});
-}
-
-TEST(Golden, WorkGroupSizesGiveTheSameBits) {
-    for (int group : {2, 4}) expect_golden("automatic", {{"packet_group", group}});
-    for (int group : {1, 16}) expect_golden("automatic", {{"shade_group", group}});
 }
 
 TEST(Golden, BrickEdgesGiveTheSameBits) {

@@ -1,3 +1,4 @@
+#include "host/render/tunables.hpp"
 #include "runtime/device.hpp"
 
 #include "runtime/select.hpp"
@@ -150,17 +151,22 @@ TEST(Device, OneAccountForAllThatIsOpenedOnADevice) {
 }
 
 TEST(Device, Tunables) {
-    const ScopedVariable tune("CLVR_TUNE", "width=16,rows=-3");
+    const ScopedVariable tune("CLVR_TUNE", "packet=8,conv_vectors=3");
     Device device = Device::open(chosen());
-    EXPECT_EQ(device.tunable("width", 1), 16);
-    EXPECT_EQ(device.tunable("rows", 1), -3);
-    EXPECT_EQ(device.tunable("other", 7), 7);
-    device.set_tunable("width", 4);
-    EXPECT_EQ(device.tunable("width", 1), 4);
-    for (const char* wrong : {"width", "width=", "width=x", "width=1x", "=3", "width=1,,"}) {
-        const ScopedVariable bad("CLVR_TUNE", wrong);
-        EXPECT_EQ(error_of([] { Device::open(chosen()); }).kind(), ErrorKind::usage) << wrong;
-    }
+    EXPECT_EQ(device.tunable(tunables::packet), 8);
+    EXPECT_EQ(device.tunable(tunables::packet_refill), 2) << "the default of such packets";
+    EXPECT_EQ(device.tunable(tunables::packet_run), tunables::packet_run.usual(device.facts(), {{"packet", 8}}));
+    EXPECT_EQ(device.tunable(tunables::tile_pixels, 7), 7) << "what the stage chooses";
+    device.set_tunable("packet", 4);
+    EXPECT_EQ(device.tunable(tunables::packet), 4);
+    device.set_tunables({{"tile_pixels", 20}});
+    EXPECT_EQ(device.tunable(tunables::tile_pixels, 7), 20);
+    EXPECT_EQ(device.tunable(tunables::packet), tunables::packet.usual(device.facts(), {}));
+    EXPECT_EQ(error_of([&] { device.set_tunable("packets", 4); }).kind(), ErrorKind::usage);
+    EXPECT_EQ(error_of([&] { device.set_tunable("packet", 2); }).kind(), ErrorKind::usage);
+    EXPECT_EQ(error_of([&] { device.set_tunables({{"packet", 2}}); }).kind(), ErrorKind::usage);
+    const ScopedVariable bad("CLVR_TUNE", "packet=2");
+    EXPECT_EQ(error_of([] { Device::open(chosen()); }).kind(), ErrorKind::usage);
 }
 
 TEST_F(Launches, AreRoundedUpToTheLocalSize) {

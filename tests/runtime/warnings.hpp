@@ -3,6 +3,7 @@
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -21,6 +22,10 @@ public:
     Warnings(const Warnings&) = delete;
     Warnings& operator=(const Warnings&) = delete;
     std::string text() const { return text_.str(); }
+    std::ptrdiff_t lines() const {
+        const std::string all = text();
+        return std::count(all.begin(), all.end(), '\n');
+    }
 
 private:
     std::ostringstream text_;

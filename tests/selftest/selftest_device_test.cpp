@@ -35,16 +35,6 @@ TEST(Checks, PassOnEveryDevice) {
                                       << r.outcome.expected << "; found " << r.outcome.found;
 }
 
-/// Packets of the renderer and vectors of the network together, in the picture that goes through both.
-TEST(Picture, HasItsHashAtEveryWidth) {
-    for (const int width : {1, 4, 8, 16}) {
-        Device device = Device::open(devices_here().front());
-        device.set_tunable("packet", width);
-        device.set_tunable("conv_width", width);
-        EXPECT_EQ(pixel_hash(golden_picture(device)), golden_picture_hash) << "width " << width;
-    }
-}
-
 /// A driver's fault, as a change of one kernel file, and the checks that must find it.
 struct Fault {
     const char *name, *file, *right, *wrong;

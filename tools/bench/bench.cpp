@@ -58,8 +58,6 @@ DeviceRows measure_device(const DeviceFacts& facts, const BenchOptions& options,
 }
 
 TunedDevice tune_device(const DeviceFacts& facts, bool quick, Child& child) {
-    std::vector<Knob> knobs = knobs_for(facts);
-    if (quick) knobs.erase(std::remove_if(knobs.begin(), knobs.end(), [](const Knob& k) { return !k.quick; }), knobs.end());
     // What a user without a file of his own has: the shipped values.
     const auto shipped = shipped_tuning(facts);
     const double end = steady_seconds() + (quick ? whole_quick_tuning_limit : whole_tuning_limit);
@@ -69,7 +67,8 @@ TunedDevice tune_device(const DeviceFacts& facts, bool quick, Child& child) {
         return ask_verdict(child, {name_of(facts), on, base, candidate, quick ? 5 : 9, quick ? 2.0 : 6.0},
                            std::min(left, quick ? quick_candidate_limit : candidate_limit));
     };
-    return tune(knobs, shipped ? shipped->tuning.values : Tunables(), evaluate, steady_seconds, quick ? quick_tuning_limit : tuning_limit);
+    return tune(knobs_for(facts, quick), shipped ? shipped->tuning.values : Tunables(), evaluate, steady_seconds,
+                quick ? quick_tuning_limit : tuning_limit);
 }
 
 std::string tuned_text(const TunedDevice& t) {

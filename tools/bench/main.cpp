@@ -70,6 +70,7 @@ void bench_devices(const Options& o) {
     for (const std::string& file : {o.json, o.html})
         if (!file.empty()) check_writable(file); // before minutes of measuring
     for (const std::string& name : o.stages) stage_named(name);
+    tunables_from_environment(); // what it refuses is said before minutes of measuring
     const std::vector<DeviceFacts> all = list_devices();
     std::vector<DeviceFacts> devices = all;
     if (!o.selector.empty() || all.empty()) devices = select_devices(o.selector).devices; // says what is wrong where there is none

@@ -31,8 +31,7 @@ public:
 
     /// Moves best[knob] to the fastest value reached.
     void along(const Knob& knob, Tunables& best) {
-        const auto given = best.find(knob.name);
-        const int start = given == best.end() ? knob.fallback : given->second;
+        const int start = knob.current(best);
         const auto above = std::upper_bound(knob.values.begin(), knob.values.end(), start);
         const auto below = std::lower_bound(knob.values.begin(), knob.values.end(), start);
         const bool better = one_way(knob, std::vector<int>(std::make_reverse_iterator(below), knob.values.rend()), start, best);
@@ -74,6 +73,18 @@ private:
 };
 
 } // namespace
+
+std::vector<Knob> knobs_for(const DeviceFacts& device, bool quick) {
+    std::vector<Knob> knobs;
+    for (const Tunable* t : declared_tunables()) {
+        const FewNumbers& tried = t->tried(device);
+        if (tried.empty() || (quick && !t->quick)) continue;
+        knobs.push_back({t->name, {t->stages.begin(), t->stages.end()}, {tried.begin(), tried.end()}, [t, device](const Tunables& set) {
+                             return value_of(*t, device, set);
+                         }});
+    }
+    return knobs;
+}
 
 TunedDevice tune(const std::vector<Knob>& knobs, const Tunables& start, const Evaluate& evaluate, const Clock& clock,
                  double limit_seconds) {

@@ -11,20 +11,16 @@
 
 namespace clvr::bench {
 
-/// A tunable of clvr: where it counts and what may be tried.
+/// A tunable of clvr on a device: where it counts and what may be tried.
 struct Knob {
     std::string name;
-    std::vector<std::string> stages; ///< that it may speed up; their geometric mean decides
-    std::vector<int> values;         ///< in order; a walk goes to neighbours and stops where it gets slower
-    int fallback;                    ///< what the code takes by itself on this device
-    bool quick;                      ///< worth trying with --quick
+    std::vector<std::string> stages;             ///< that it may speed up; their geometric mean decides
+    std::vector<int> values;                     ///< in order; a walk goes to neighbours and stops where it gets slower
+    std::function<int(const Tunables&)> current; ///< its value, set or by default, where these are set
 };
 
-/// All tunables that a tuning tries on this device, those that promise most first.
-std::vector<Knob> knobs_for(const DeviceFacts& device);
-
-/// Tunables that are not tried, with the reason.
-const std::vector<std::pair<std::string, std::string>>& untuned();
+/// All tunables that a tuning tries on this device, those that promise most first; `quick`: those alone that promise much.
+std::vector<Knob> knobs_for(const DeviceFacts& device, bool quick);
 
 /// Holds a candidate against a base on some stages.
 using Evaluate = std::function<Verdict(const Tunables& base, const Tunables& candidate, const std::vector<std::string>& stages)>;

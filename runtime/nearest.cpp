@@ -1,4 +1,4 @@
-#include "host/cli/nearest.hpp"
+#include "runtime/nearest.hpp"
 
 #include <algorithm>
 

@@ -1,0 +1,70 @@
+// What may be tuned of the network and its grids.
+#pragma once
+#include "runtime/tunables.hpp"
+
+namespace clvr::tunables {
+
+/// Lanes of a vector of pixels.
+inline constexpr Tunable conv_width{"conv_width",
+                                    AllowedValues::list({1, 4, 8, 16}),
+                                    [](const DeviceFacts& d, const Tunables&) { return d.type == DeviceType::cpu ? 16 : 1; },
+                                    {"GuideNet", "slice", "splat"},
+                                    {1, 4, 8, 16},
+                                    {1, 4, 8, 16},
+                                    true};
+
+/// Vectors of a row that a work-item of a convolution takes; by default 5, or 4 where that fills the rows better.
+inline constexpr Tunable conv_vectors{"conv_vectors",
+                                      AllowedValues::whole(1, 6),
+                                      [](const DeviceFacts&, const Tunables&) { return 5; },
+                                      {"GuideNet"},
+                                      {1, 2, 3, 4, 5, 6},
+                                      {1, 2, 3, 4, 5, 6},
+                                      true};
+
+/// Output channels that a convolution computes at once, at most: they must divide the layer's.
+inline constexpr Tunable conv_block{"conv_block",
+                                    AllowedValues::whole(1, 10),
+                                    [](const DeviceFacts&, const Tunables&) { return 5; },
+                                    {"GuideNet"},
+                                    {1, 2, 4, 5, 10},
+                                    {1, 2, 4, 5, 10},
+                                    true};
+
+/// Work-items of a convolution's group along a row, and rows. No more along a row than fill it: rows are padded to whole groups.
+inline constexpr Tunable conv_group_x{"conv_group_x",
+                                      AllowedValues::powers_of_two(1, 128),
+                                      [](const DeviceFacts& d, const Tunables& set) { return value_of(conv_width, d, set) == 1 ? 32 : 1; },
+                                      {"GuideNet"},
+                                      {1, 2, 4},
+                                      {8, 16, 32, 64, 128}};
+inline constexpr Tunable conv_group_y{"conv_group_y",
+                                      AllowedValues::powers_of_two(1, 16),
+                                      [](const DeviceFacts&, const Tunables&) { return 4; },
+                                      {"GuideNet"},
+                                      {1, 2, 4, 8, 16},
+                                      {1, 2, 4, 8, 16}};
+
+/// Cells of a grid's column that a work-item of splat gathers, at most all.
+inline constexpr Tunable splat_bins{
+    "splat_bins", AllowedValues::whole(1, 256),  [](const DeviceFacts& d, const Tunables&) { return d.type == DeviceType::cpu ? 256 : 8; },
+    {"splat"},    {1, 2, 4, 8, 16, 32, 64, 256}, {1, 2, 4, 8, 16, 32, 64}};
+
+/// Work-items along a row, in a group of kernels over all pixels.
+inline constexpr Tunable pixel_group{"pixel_group",
+                                     AllowedValues::powers_of_two(1, 256),
+                                     [](const DeviceFacts& d, const Tunables& set) { return value_of(conv_width, d, set) == 1 ? 32 : 4; },
+                                     {"slice"},
+                                     {1, 2, 4, 8, 16},
+                                     {8, 16, 32, 64}};
+
+/// MiB of a tile of the picture, at most: less where memory is short. 1080p stays below 400 MB in two tiles, which costs 7 % more pixels;
+/// larger tiles are not faster.
+inline constexpr Tunable denoise_mib{"denoise_mib",
+                                     AllowedValues::whole(1, 1 << 20),
+                                     [](const DeviceFacts&, const Tunables&) { return 380; },
+                                     {"denoise a frame"},
+                                     {47, 95, 190, 380},
+                                     {47, 95, 190, 380}};
+
+} // namespace clvr::tunables
