@@ -90,7 +90,7 @@ TEST_F(Experiment, RunsAndIsGoneOnWith) {
     const Outcome other = experiment("e", {"--seed", "1"});
     EXPECT_EQ(other.exit_code, 3);
     EXPECT_THAT(other.err, HasSubstr("other settings"));
-    // Elsewhere, interrupted in every stage: the same bits.
+    // Elsewhere, interrupted as the files of each stage appear: the same bits.
     for (const char* reached : {"", "train/pairs.json", "test/pairs.json", "model.safetensors"}) {
         std::vector<std::string> words{"experiment", "foam", "-o", path("i")};
         words.insert(words.end(), smallest.begin(), smallest.end());
