@@ -73,13 +73,10 @@ struct Denoiser::State {
     Buffer parameters;
     std::unique_ptr<NeuralGrid> grid; // of the last tile's size, kept for the next frame
     BatchShape shape;
-    Kernel finish, give_back, blend_bands, blend_sums, blend;
+    Kernel finish;
     std::size_t repaired = 0;
 
-    State(const Device& d, const Model& m)
-        : device(d), model(m), plan(m, false), tiling(m), finish(device.kernel("denoise/finish")),
-          give_back(device.kernel("denoise/give_back")), blend_bands(device.kernel("denoise/blend_bands")),
-          blend_sums(device.kernel("denoise/blend_sums")), blend(device.kernel("denoise/blend_by_variance")) {
+    State(const Device& d, const Model& m) : device(d), model(m), plan(m, false), tiling(m), finish(device.kernel("denoise/finish")) {
         parameters = device.upload(m.flat(), "model");
     }
 
@@ -175,6 +172,9 @@ struct Denoiser::State {
     void go_back(Film& film, int out, int noisy, bool with_opacity) {
         const auto size = static_cast<cl_uint>(film.pixels()), to = static_cast<cl_uint>(out), from = static_cast<cl_uint>(noisy),
                    variance = static_cast<cl_uint>(film.find("variance.R"));
+        // Loaded here: a picture of one sample does without, and each takes about 50 ms the first time.
+        Kernel give_back = device.kernel("denoise/give_back"), blend_bands = device.kernel("denoise/blend_bands"),
+               blend_sums = device.kernel("denoise/blend_sums"), blend = device.kernel("denoise/blend_by_variance");
         if (with_opacity)
             device.launch(give_back, {film.pixels()}, give_back.group(64), {}, film.planes(), size, to, from, variance,
                           static_cast<cl_uint>(film.find("opacity.A")));
