@@ -91,7 +91,7 @@ TEST_F(Experiment, RunsAndIsGoneOnWith) {
     EXPECT_EQ(other.exit_code, 3);
     EXPECT_THAT(other.err, HasSubstr("other settings"));
     // Elsewhere, interrupted as the files of each stage appear: the same bits.
-    for (const char* reached : {"", "train/pairs.json", "test/pairs.json", "model.safetensors"}) {
+    for (const char* reached : {"", "train/pairs.json", "test/pairs.json", "model.checkpoint", "model.safetensors"}) {
         std::vector<std::string> words{"experiment", "foam", "-o", path("i")};
         words.insert(words.end(), smallest.begin(), smallest.end());
         Child child(words, {}, folder.path());

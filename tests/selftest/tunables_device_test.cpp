@@ -53,14 +53,17 @@ TEST(Tunables, GiveTheGoldenBitsOfLargerFrames) {
     const std::string denoised = pixel_hash(golden_denoised(open_device()));
     for (const Tunables& round :
          {Tunables{{"conv_width", 4}, {"conv_vectors", 3}, {"conv_block", 4}, {"conv_group_y", 8}, {"denoise_mib", 1}},
-          Tunables{{"conv_width", 1}, {"conv_group_x", 128}, {"splat_bins", 7}, {"pixel_group", 2}}}) {
+          Tunables{{"conv_width", 1}, {"conv_group_x", 128}, {"splat_bins", 7}, {"pixel_group", 2}},
+          Tunables{{"conv_width", 1}, {"conv_vectors", 2}, {"conv_group_x", 8}}, Tunables{{"conv_width", 8}, {"conv_vectors", 3}},
+          Tunables{{"splat_bins", 1}}}) {
         Device device = open_device();
         device.set_tunables(round);
         EXPECT_EQ(pixel_hash(golden_denoised(device)), denoised) << round.begin()->second;
     }
     for (const Tunables& round : {Tunables{{"wave_paths", 333}, {"tile_pixels", 50}, {"march_pixels", 100}, {"packet_run", 3}},
                                   Tunables{{"packet", 4}, {"brick_log2", 3}, {"packet_refill", 1}, {"packet_group", 4}},
-                                  Tunables{{"packet", 1}, {"brick_log2", 6}, {"packet_group", 64}, {"shade_group", 16}}}) {
+                                  Tunables{{"packet", 1}, {"brick_log2", 6}, {"packet_group", 64}, {"shade_group", 16}},
+                                  Tunables{{"packet", 8}, {"packet_group", 2}, {"shade_group", 1}}, Tunables{{"packet", 16}}}) {
         Device device = open_device();
         device.set_tunables(round);
         EXPECT_EQ(pixel_hash(render_golden("automatic", {device})), golden_hashes.at("automatic")) << round.begin()->first;
