@@ -160,7 +160,7 @@ std::string display_name(const DeviceFacts& device) {
     return device.sub_devices ? fmt::format("part {}/{} of {}", device.sub_device + 1, device.sub_devices, root) : root;
 }
 
-bool is_same(Device& a, Device& b) { return a.queue()() == b.queue()(); }
+bool is_same(Device a, Device b) { return a.queue()() == b.queue()(); }
 
 void copy(Device& device, const Buffer& from, Buffer& to, std::size_t bytes, std::size_t from_offset, std::size_t to_offset) {
     if (from_offset > from.bytes() || bytes > from.bytes() - from_offset || to_offset > to.bytes() || bytes > to.bytes() - to_offset)

@@ -15,7 +15,7 @@ namespace clvr {
 std::string display_name(const DeviceFacts& device);
 
 /// Whether both are the same opened device.
-bool is_same(Device& a, Device& b);
+bool is_same(Device a, Device b);
 
 /// Enqueues on `device` a copy between buffers of its context, [bytes]; another device of it must have finished with them.
 void copy(Device& device, const Buffer& from, Buffer& to, std::size_t bytes, std::size_t from_offset, std::size_t to_offset);

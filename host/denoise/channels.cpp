@@ -59,8 +59,8 @@ int ChannelPlan::plane(const std::string& name) const {
 }
 
 namespace {
-/// Number of the plane of a film that the network reads as `name`.
-int plane_in(const Film& film, const std::string& name) { return film.find(is_radiance(name) ? "noisy." + name : name); }
+/// Number of the plane of a film that the network reads as `name`: the result takes the place of R G B A.
+int plane_in(const Film& film, const std::string& name) { return film.find(is_radiance(name) || name == "A" ? "noisy." + name : name); }
 } // namespace
 
 template <class Number>

@@ -29,7 +29,7 @@ public:
     /// Those of planes() that no frame has: known.R/G/B and noise.
     std::vector<std::string> made_planes() const;
     bool reads_known_light() const;
-    /// Both for the planes of a film that has all of planes(): as numbers there, the noisy beauty's in place of R G B.
+    /// Both for the planes of a film that has all of planes(): as numbers there, noisy.R G B A in place of R G B A.
     std::vector<std::array<std::int32_t, 2>> channels(const Film& film) const;
     shared::SourceParams params(double exposure, const Film& film) const;
 
@@ -44,7 +44,7 @@ public:
     std::size_t gather(const Frame& frame, const Frame* target, const Region& region, const std::optional<KnownLight>& known,
                        std::vector<float>& planes) const;
 
-    /// One of planes() alone, not of the target.
+    /// One of planes() alone, not of the target, or another channel of the frame.
     std::size_t gather_plane(const std::string& name, const Frame& frame, const Region& region, const std::optional<KnownLight>& known,
                              std::vector<float>& plane) const;
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <functional>
+#include <iterator>
 #include <numeric>
 
 namespace clvr {
@@ -39,10 +40,10 @@ struct Tiling {
     }
 };
 
-/// A part of a picture on a device, with what it takes to denoise its inner part.
-struct Window {
-    Film film;
-    Region region, inner; // of the picture; inner lies in region
+/// Which part of a picture a film holds, and which part of that is wanted.
+struct Part {
+    int width, height; // of the picture
+    Region region, inner;
 };
 
 /// `r` and as many pixels around it as the picture has.
@@ -80,7 +81,7 @@ struct Denoiser::State {
         parameters = device.upload(m.flat(), "model");
     }
 
-    /// Bytes that a tile may take beside a picture of `held` bytes: 1080p stays below 400 MB in all.
+    /// Bytes that a tile may take beside a film of `held` bytes: 1080p stays below 400 MB in all.
     std::size_t tile_budget(std::size_t held) const {
         const std::size_t kept = grid ? tile_bytes({0, 0, shape.width, shape.height}, shape.show) : 0,
                           most = static_cast<std::size_t>(device.tunable(tunables::denoise_mib)) << 20;
@@ -97,7 +98,7 @@ struct Denoiser::State {
         return NeuralGrid::bytes(device, model, {outer.width, outer.height, 1, show});
     }
 
-    /// Halves the picture's rows, then its columns, to parts of at least `align` pixels, until one that gives so much fits.
+    /// Cuts the picture's rows, then its columns, into ever more parts of at least `align` pixels, until one of that size fits.
     template <class Fits>
     Region part_of(int width, int height, const Fits& fits) const {
         Region t{0, 0, width, height};
@@ -129,11 +130,10 @@ struct Denoiser::State {
 
     using OnTile = std::function<void(NeuralGrid& grid, const Region& inner, const Region& outer)>;
 
-    /// Denoises the window's inner part of a picture of this size, whose exposure is known: R G B A of the film, where the noisy beauty
-    /// lies, become the result, the noisy ones stay in noisy.R G B A. `on_tile` sees each tile of the network (its parts of the picture).
-    /// `alpha`: whether A holds one. `held`: bytes of the device that count for tile_budget.
-    void run(Window& window, int width, int height, double exposure, bool alpha, std::size_t held, bool show, const OnTile& on_tile) {
-        Film& film = window.film;
+    /// Denoises the wanted part of a picture whose exposure is known: R G B A of the film, where the noisy beauty lies, become the result,
+    /// the noisy ones stay in noisy.R G B A. `alpha`: whether A holds one. `on_tile` sees each tile of the network (its parts of the
+    /// picture).
+    void run(Film& film, const Part& part, double exposure, bool alpha, bool show, const OnTile& on_tile) {
         const std::size_t plane_bytes = film.pixels() * sizeof(float);
         const bool with_variance = film.samples != 1 && film.find("variance.R") >= 0, with_opacity = alpha && film.find("opacity.A") >= 0;
         const int noisy = film.require(noisy_planes), out = film.require(beauty_planes);
@@ -146,19 +146,19 @@ struct Denoiser::State {
         const Buffer channels = device.upload(plan.channels(film), "channel list");
         const auto size = static_cast<cl_uint>(film.pixels());
         // Blending sums over pixels beside the inner part.
-        const Region wanted = with_variance ? grown(window.inner, CLVR_BLEND_RADIUS + 1, width, height) : window.inner;
-        const Region tile_size = tile(wanted, width, height, show, tile_budget(held));
+        const Region wanted = with_variance ? grown(part.inner, CLVR_BLEND_RADIUS + 1, part.width, part.height) : part.inner;
+        const Region tile_size = tile(wanted, part.width, part.height, show, tile_budget(film.planes().bytes()));
         for (int y = wanted.y; y < wanted.y + wanted.height; y += tile_size.height)
             for (int x = wanted.x; x < wanted.x + wanted.width; x += tile_size.width) {
                 const Region inner{x, y, std::min(tile_size.width, wanted.x + wanted.width - x),
                                    std::min(tile_size.height, wanted.y + wanted.height - y)},
-                    outer = tiling.outer(inner, width, height);
+                    outer = tiling.outer(inner, part.width, part.height);
                 NeuralGrid& g = grid_of({outer.width, outer.height, 1, show});
-                g.assemble(film.planes(), film.width(), film.height(), params, outer.x - window.region.x, outer.y - window.region.y, 0, 0,
+                g.assemble(film.planes(), film.width(), film.height(), params, outer.x - part.region.x, outer.y - part.region.y, 0, 0,
                            &channels);
                 g.forward(1);
                 const shared::int4 from{inner.x - outer.x, inner.y - outer.y, inner.width, inner.height};
-                const auto to = static_cast<cl_uint>((inner.y - window.region.y) * film.width() + inner.x - window.region.x);
+                const auto to = static_cast<cl_uint>((inner.y - part.region.y) * film.width() + inner.x - part.region.x);
                 device.launch(finish, {static_cast<std::size_t>(inner.width), static_cast<std::size_t>(inner.height)}, finish.group(64), {},
                               g.params(), g.result(), 3 + (show ? 3 * static_cast<int>(model.levels.size()) : 0), from, params.exposure,
                               film.planes(), static_cast<cl_uint>(out), size, film.width(), to);
@@ -203,7 +203,7 @@ struct Denoiser::State {
 
     /// Size of the parts in which a picture on the host goes through: all of it where the budget holds its planes.
     Region window_size(const Frame& frame) const {
-        const std::size_t planes = (plan.planes().size() + 8 + 3 + 7) / 8 * 8;
+        const std::size_t planes = plan.planes().size() + beauty_planes.size() + noisy_planes.size() + variance_planes.size() + 1;
         const std::size_t bytes = planes * 4 + (has_variances(frame) ? 4 + 52 : 0), most = window_budget();
         return part_of(frame.width, frame.height, [&](const Region& t) {
             const int more = 2 * (tiling.halo + CLVR_BLEND_RADIUS + 1) + tiling.align;
@@ -213,41 +213,31 @@ struct Denoiser::State {
         });
     }
 
-    /// What it takes of a frame to denoise `inner`.
-    Window upload(const Frame& frame, const Region& inner, const std::optional<KnownLight>& known) {
-        const Region wanted = grown(inner, CLVR_BLEND_RADIUS + 1, frame.width, frame.height),
-                     region = tiling.outer(wanted, frame.width, frame.height);
-        Window window{{device, region.width, region.height}, region, inner};
-        Film& film = window.film;
+    /// What it takes of a frame to denoise a part of it: `region` on a film.
+    Film upload(const Frame& frame, const Region& region, const std::optional<KnownLight>& known) {
+        std::vector<std::string> names = beauty_planes;
+        const auto add = [&](const std::vector<std::string>& more) {
+            std::copy_if(more.begin(), more.end(), std::back_inserter(names),
+                         [&](const std::string& name) { return std::find(names.begin(), names.end(), name) == names.end(); });
+        };
+        add(noisy_planes);
+        if (has_variances(frame)) add(variance_planes);
+        add(plan.planes());
+        if (frame.has("opacity.A") && frame.has("A")) add({"opacity.A"});
+        Film film(device, region.width, region.height, names.size());
+        film.require(names);
         if (const auto spp = frame.attributes.find("clvr.spp"); spp != frame.attributes.end())
             film.samples = static_cast<int>(std::clamp(std::atof(spp->second.c_str()), 0.0, 1e9));
-        std::vector<float> planes;
-        repaired += plan.gather(frame, nullptr, region, known, planes);
-        std::vector<std::string> names = beauty_planes, further = plan.planes();
-        names.insert(names.end(), noisy_planes.begin(), noisy_planes.end());
-        if (has_variances(frame)) names.insert(names.end(), variance_planes.begin(), variance_planes.end());
-        further.erase(further.begin(), further.begin() + 3); // R G B lie in beauty
-        names.insert(names.end(), further.begin(), further.end());
-        if (frame.has("opacity.A") && frame.has("A") && std::find(names.begin(), names.end(), "opacity.A") == names.end())
-            names.push_back("opacity.A");
-        film.require(names);
-        const auto put = [&](const std::string& name, const float* values) {
-            device.write(film.planes(), values, region.pixels() * 4, static_cast<std::size_t>(film.find(name)) * region.pixels() * 4);
-        };
-        for (std::size_t k = 0; k < plan.planes().size(); ++k) put(plan.planes()[k], &planes[k * region.pixels()]);
+        std::vector<float> plane;
         for (const std::string& name : names) {
-            const std::vector<float>* const values = frame.find(name);
-            const bool gathered = std::find(plan.planes().begin(), plan.planes().end(), name) != plan.planes().end();
-            if (!values || gathered) continue;
-            std::vector<float> part;
-            for (int y = region.y; y < region.y + region.height; ++y)
-                for (int x = region.x; x < region.x + region.width; ++x) {
-                    const float v = (*values)[static_cast<std::size_t>(y) * frame.width + x];
-                    part.push_back(std::isfinite(v) ? v : 0);
-                }
-            put(name, part.data());
+            const bool read = std::find(plan.planes().begin(), plan.planes().end(), name) != plan.planes().end();
+            if (!read && (!frame.has(name) || name.rfind("noisy.", 0) == 0)) continue; // run() makes the noisy ones
+            plane.clear();
+            const std::size_t bad = plan.gather_plane(name, frame, region, known, plane);
+            if (read) repaired += bad;
+            film.upload(name, plane);
         }
-        return window;
+        return film;
     }
 };
 
@@ -271,7 +261,7 @@ Frame statistics_of(Film& film, const ChannelPlan& plan) {
     std::vector<std::string> read{"R", "G", "B", "opacity.A"};
     if (plan.reads_known_light()) read.insert(read.end(), known_light_channels().begin(), known_light_channels().end());
     for (const std::string& name : read)
-        if (film.find(name) >= 0) frame.channels[name] = film.download(name);
+        if (film.find(name) >= 0 && frame.channels[name].empty()) frame.channels[name] = film.download(name);
     return frame;
 }
 
@@ -294,14 +284,7 @@ void Denoiser::denoise(Film& film) {
         s.plan.gather_plane(name, frame, whole, known, plane);
         film.upload(name, plane);
     }
-    Window window{std::move(film), whole, whole};
-    try {
-        s.run(window, whole.width, whole.height, exposure, true, 0, false, {});
-    } catch (...) {
-        film = std::move(window.film);
-        throw;
-    }
-    film = std::move(window.film);
+    s.run(film, {whole.width, whole.height, whole, whole}, exposure, true, false, {});
     film.denoised = true;
 }
 
@@ -335,20 +318,20 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
             if (outputs[c]) put(g.outputs(), outputs.size(), c, *outputs[c], 1);
     };
     const std::optional<KnownLight> known = s.plan.known_light(frame);
-    const Region part = s.window_size(frame);
-    for (int y = 0; y < frame.height; y += part.height)
-        for (int x = 0; x < frame.width; x += part.width) {
-            const Region inner{x, y, std::min(part.width, frame.width - x), std::min(part.height, frame.height - y)};
+    const Region size = s.window_size(frame);
+    for (int y = 0; y < frame.height; y += size.height)
+        for (int x = 0; x < frame.width; x += size.width) {
+            const Region inner{x, y, std::min(size.width, frame.width - x), std::min(size.height, frame.height - y)},
+                region = s.tiling.outer(grown(inner, CLVR_BLEND_RADIUS + 1, frame.width, frame.height), frame.width, frame.height);
             if (inner.pixels() != frame.pixels()) s.grid.reset(); // it may have taken the room of this part
-            Window window = s.upload(frame, inner, known);
-            s.run(window, frame.width, frame.height, exposure, alpha, window.film.planes().bytes(), view.levels, on_tile);
+            Film film = s.upload(frame, region, known);
+            s.run(film, {frame.width, frame.height, region, inner}, exposure, alpha, view.levels, on_tile);
             for (const std::string& name : beauty_planes) {
                 if (name == "A" && !alpha) continue;
-                const std::vector<float> plane = window.film.download(name);
+                const std::vector<float> plane = film.download(name);
                 std::vector<float>& to = done.channel(name);
                 for (int row = y; row < y + inner.height; ++row) {
-                    const auto from =
-                        plane.begin() + static_cast<std::ptrdiff_t>(row - window.region.y) * window.region.width + x - window.region.x;
+                    const auto from = plane.begin() + static_cast<std::ptrdiff_t>(row - region.y) * region.width + x - region.x;
                     std::copy(from, from + inner.width, to.begin() + static_cast<std::ptrdiff_t>(row) * frame.width + x);
                 }
             }

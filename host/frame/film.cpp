@@ -3,10 +3,7 @@
 
 namespace clvr {
 
-bool Film::is_on(const Device& device) const {
-    Device mine = device_, other = device;
-    return is_same(mine, other);
-}
+bool Film::is_on(const Device& device) const { return is_same(device_, device); }
 
 int Film::require(const std::vector<std::string>& names) {
     const int first = find(names.front());
@@ -20,25 +17,28 @@ int Film::require(const std::vector<std::string>& names) {
         if (find(name) >= 0) throw Error(ErrorKind::internal, "there is a plane " + name + " and none " + names.front(), "Film");
     const std::size_t plane_bytes = pixels() * sizeof(float), had = names_.size();
     names_.insert(names_.end(), names.begin(), names.end());
-    if (names_.size() > room_) {
-        // Planes come in a few steps in a picture's first frame: room for some more saves copies.
-        room_ = (names_.size() + 7) / 8 * 8;
+    if (names_.size() > room_ || !planes_) {
+        room_ = std::max(room_, (names_.size() + 7) / 8 * 8);
         Buffer grown = device_.buffer(room_ * plane_bytes, "film");
-        if (had > 0) copy(device_, planes_, grown, had * plane_bytes, 0, 0);
-        if (had > 0) device_.finish(); // before the old ones go
+        if (had > 0) {
+            copy(device_, planes_, grown, had * plane_bytes, 0, 0);
+            device_.finish(); // before the old ones go
+        }
         planes_ = std::move(grown);
     }
     return static_cast<int>(had);
 }
 
-std::vector<float> Film::download(const std::string& name) {
+std::size_t Film::offset(const std::string& name) const {
     const int plane = find(name);
     if (plane < 0) throw Error(ErrorKind::internal, "there is no plane " + name, "Film");
-    return device_.download<float>(planes_, pixels(), static_cast<std::size_t>(plane) * pixels());
+    return static_cast<std::size_t>(plane) * pixels();
 }
 
+std::vector<float> Film::download(const std::string& name) { return device_.download<float>(planes_, pixels(), offset(name)); }
+
 void Film::upload(const std::string& name, const std::vector<float>& values) {
-    device_.write(planes_, values.data(), pixels() * sizeof(float), static_cast<std::size_t>(find(name)) * pixels() * sizeof(float));
+    device_.write(planes_, values.data(), pixels() * sizeof(float), offset(name) * sizeof(float));
 }
 
 } // namespace clvr

@@ -13,7 +13,9 @@ namespace clvr {
 /// picture lies over nothing: R G B are premultiplied, without background.
 class Film {
 public:
-    Film(const Device& device, int width, int height) : device_(device), width_(width), height_(height) {}
+    /// `room`: planes that memory is taken for at the first one; with more of them the film is copied.
+    Film(const Device& device, int width, int height, std::size_t room = 8)
+        : device_(device), width_(width), height_(height), room_(room) {}
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -39,10 +41,11 @@ public:
     bool denoised = false; ///< R G B A went through a filter; the input is noisy.R G B A
 
 private:
+    std::size_t offset(const std::string& name) const; // of its plane [floats]
     Device device_;
     int width_, height_;
     std::vector<std::string> names_;
-    std::size_t room_ = 0; // planes that fit
+    std::size_t room_; // planes that fit into planes_, or will
     Buffer planes_;
 };
 

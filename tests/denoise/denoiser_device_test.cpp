@@ -289,6 +289,22 @@ TEST(Denoiser, GivesAFilmTheBitsOfItsFrame) {
     }
 }
 
+/// The result's alpha takes the place of the noisy one: a network that reads A must get what the frame has there.
+TEST(Denoiser, ReadsTheNoisyAlphaThatTheFrameHas) {
+    Frame frame = noisy_frame(83, 61);
+    for (float& a : frame.channel("A")) a = 0.25f + 0.5f * a;
+    frame.channel("depth.half") = frame.at("A");
+    Model alpha = test_model(), other = alpha;
+    alpha.channels.push_back("A"), other.channels.push_back("depth.half");
+    initialise(alpha, 5), initialise(other, 5);
+    Device device = test_device();
+    const Frame expected = Denoiser(device, other).denoise(frame);
+    EXPECT_EQ(Denoiser(device, alpha).denoise(frame).at("R"), expected.at("R"));
+    Film film = film_of(device, frame, 1);
+    Denoiser(device, alpha).denoise(film);
+    EXPECT_EQ(film.download("R"), expected.at("R"));
+}
+
 TEST(Denoiser, ReadsNoVarianceOfOneSample) {
     Frame frame = noisy_frame(40, 30);
     Device device = test_device();
