@@ -1,18 +1,10 @@
 // A volume and its classification on one device: the arguments VOLUME_ARGS of the kernels.
 #pragma once
-#include "host/volume/bricks.hpp"
+#include "host/render/classified.hpp"
 #include "kernels/shared/volume_params.h"
 #include "runtime/device.hpp"
 
 namespace clvr {
-
-/// The volume prepared for a classification, on the host: independent of the device.
-struct Classified {
-    const Voxels* voxels = nullptr;
-    const MajorantGrid* grid = nullptr;
-    TransferTable table;
-    std::vector<float> majorants;
-};
 
 /// Where the bricks of a classified volume go on a device: room for all of them where one buffer holds it and that is at most half of what
 /// is left of the device's memory, so that another transfer function uploads only what it shows more; else room for the visible ones.

@@ -1,5 +1,6 @@
 #include "host/render/session.hpp"
 #include "host/render/params.hpp"
+#include "host/render/pixel_numbers.hpp"
 #include "host/render/tunables.hpp"
 #include "runtime/host_memory.hpp"
 #include "runtime/size.hpp"
@@ -15,37 +16,6 @@ namespace {
 
 constexpr double framing_opacity = 0.02; // what is fainter does not count for the camera's framing
 const std::atomic<bool> never{false};
-
-/// x, y of a pixel number: kernels/lib/paths.clh pixel_of.
-std::array<std::uint32_t, 2> pixel_of(std::uint32_t number, int width) {
-    const std::uint32_t blocks_x = (width + 3u) / 4, block = number / 16;
-    return {block % blocks_x * 4 + number % 4, block / blocks_x * 4 + number / 4 % 4};
-}
-
-/// Calls put(pixel number, index in the frame) for every pixel of the picture.
-template <class F>
-void for_pixels(std::uint32_t numbers, int width, int height, F&& put) {
-    for (std::uint32_t i = 0; i < numbers; ++i) {
-        const auto [x, y] = pixel_of(i, width);
-        if (x < static_cast<std::uint32_t>(width) && y < static_cast<std::uint32_t>(height))
-            put(i, static_cast<std::size_t>(y) * width + x);
-    }
-}
-
-Classified classify(const PreparedVolume& volume, const Scene& scene) {
-    Classified c;
-    c.voxels = &volume.voxels;
-    c.grid = &volume.grid;
-    double low = volume.grid.range[0], high = volume.grid.range[1];
-    for (std::size_t k = 0; k < volume.grid.range.size(); k += 2) {
-        low = std::min<double>(low, volume.grid.range[k]);
-        high = std::max<double>(high, volume.grid.range[k + 1]);
-    }
-    c.table = tabulate(scene.transfer ? *scene.transfer : automatic_transfer_function(volume.voxels, stored_histogram(volume.voxels)),
-                       volume.voxels, low, high);
-    c.majorants = majorants(volume.grid, c.table);
-    return c;
-}
 
 std::vector<Double3> outline_of(const Classified& c, const Scene& scene) {
     std::vector<float> clear = c.majorants;
@@ -110,13 +80,13 @@ struct RenderSession::HostSums {
     Frame channels;
 };
 
-RenderSession::RenderSession(std::vector<Device> devices) : all_(std::move(devices)), dealer_(all_) {
-    for (const Device& d : all_) workers_.push_back(std::make_unique<Worker>(Worker{d, {}, {}, {}, {}, {}, {}, {}, false}));
+RenderSession::RenderSession(const std::vector<Device>& devices) : dealer_(devices) {
+    for (const Device& d : devices) workers_.push_back(std::make_unique<Worker>(Worker{d, {}, {}, {}, {}, {}, {}, {}, false}));
 }
 
-RenderSession::RenderSession(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene,
+RenderSession::RenderSession(const std::vector<Device>& devices, const PreparedVolume& volume, const Scene& scene,
                              const EnvironmentTables& environment, bool steady)
-    : RenderSession(std::move(devices)) {
+    : RenderSession(devices) {
     set_scene(volume, scene, environment, steady);
 }
 
@@ -126,13 +96,14 @@ void RenderSession::set_volume(const PreparedVolume& volume) {
     volume_ = &volume;
     restart();
     for (const std::size_t k : dealer_.left()) workers_[k]->tracer.reset(), workers_[k]->sky.reset(), workers_[k]->volume.reset();
+    if (classified_.voxels) set_appearance(Appearance(scene_)); // another volume under the same one
 }
 
 void RenderSession::set_appearance(const Appearance& appearance) {
     static_cast<Appearance&>(scene_) = appearance;
     restart();
     view_set_ = false;
-    classified_ = classify(*volume_, scene_);
+    classified_ = classify(*volume_, scene_.transfer);
     warnings_.clear();
     if (std::none_of(classified_.majorants.begin(), classified_.majorants.end(), [](float m) { return m > 0; }))
         warnings_.push_back("nothing is visible: the transfer function gives every voxel the opacity 0; try another --tf, or `clvr info` "
@@ -145,8 +116,8 @@ void RenderSession::set_appearance(const Appearance& appearance) {
         const auto params = [&](const BrickLayout& layout) {
             return volume_params(scene_, volume_->voxels, volume_->grid, classified_.table, layout);
         };
-        const auto same =
-            std::find_if(done.begin(), done.end(), [&](std::size_t other) { return all_[other].context()() == w.device.context()(); });
+        const auto same = std::find_if(done.begin(), done.end(),
+                                       [&](std::size_t other) { return workers_[other]->device.context()() == w.device.context()(); });
         if (same != done.end()) {
             if (w.volume != workers_[*same]->volume) w.tracer.reset();
             w.volume = workers_[*same]->volume;
@@ -174,7 +145,7 @@ void RenderSession::set_size(int width, int height) {
     scene_.width = width, scene_.height = height;
     restart();
     view_set_ = false;
-    numbers_ = (width + 3u) / 4 * ((height + 3u) / 4) * 16;
+    numbers_ = pixel_numbers(width, height);
     film_.reset(), host_.reset(), sums_.reset(), next_.reset();
     for (const std::size_t k : dealer_.left()) workers_[k]->tracer.reset();
 }
@@ -204,7 +175,7 @@ void RenderSession::restart() {
 
 std::vector<Device> RenderSession::devices() const {
     std::vector<Device> devices;
-    for (const std::size_t k : dealer_.left()) devices.push_back(all_[k]);
+    for (const std::size_t k : dealer_.left()) devices.push_back(workers_[k]->device);
     return devices;
 }
 
@@ -241,12 +212,14 @@ void RenderSession::prepare_light() {
 /// Where the picture is kept: decided once for a size.
 void RenderSession::prepare_picture() {
     if (film_ || host_) return;
-    // Sums twice, and planes: beauty and variance, features, background, noisy input, known light.
-    constexpr std::size_t bytes_per_pixel = 64 + 4 * (7 + 16 + 3 + 4 + 3);
+    // Beauty and variance, features, noisy input, known light, noise level, and some for other filters.
+    constexpr std::size_t planes = 7 + 16 + 4 + 3 + 1 + 9;
+    constexpr std::size_t bytes_per_pixel = 64 + 4 * planes; // the sums twice
     Device& first = workers_[dealer_.left().front()]->device;
     const std::size_t plane_bytes = std::size_t{4} * scene_.width * scene_.height;
-    if (dealer_.left().size() == 1 && numbers_ * bytes_per_pixel <= first.free_bytes() / 2 && 40 * plane_bytes <= first.max_alloc_bytes()) {
-        film_ = std::make_unique<Film>(first, scene_.width, scene_.height);
+    if (dealer_.left().size() == 1 && numbers_ * bytes_per_pixel <= first.free_bytes() / 2 &&
+        planes * plane_bytes <= first.max_alloc_bytes()) {
+        film_ = std::make_unique<Film>(first, scene_.width, scene_.height, planes);
         return;
     }
     host_ = std::make_unique<HostSums>();
@@ -358,7 +331,7 @@ std::vector<Dealer::Portion> RenderSession::march_portions() const {
 
 bool RenderSession::march_features(int rays, const RenderControl& control) {
     const std::vector<std::string> wanted = march_channels(March::features, control.light);
-    if (rays_ == rays && marched_.size() >= wanted.size() && marched_.front() == wanted.front()) {
+    if (rays_ == rays && marched_.size() >= wanted.size()) {
         marched_.resize(wanted.size());
         return true;
     }
@@ -401,7 +374,7 @@ bool RenderSession::march(March kind, int rays, bool lit, const RenderControl& c
     for (std::size_t p = 0; p < names.size() && !film_; ++p) {
         auto& channel = host_->channels.channel(names[p]);
         const float* plane = &planes[p * numbers_];
-        for_pixels(numbers_, scene_.width, scene_.height, [&](std::uint32_t i, std::size_t at) { channel[at] = plane[i]; });
+        for_pixels(scene_.width, scene_.height, [&](std::uint32_t i, std::size_t at) { channel[at] = plane[i]; });
     }
     if (kind == March::features)
         marched_ = names, rays_ = rays;
@@ -422,7 +395,7 @@ void RenderSession::resolve() {
     } else {
         std::array<std::vector<float>*, 7> to{};
         for (std::size_t c = 0; c < to.size(); ++c) to[c] = &host_->channels.channel(beauty_channels[c]);
-        for_pixels(numbers_, scene_.width, scene_.height, [&](std::uint32_t i, std::size_t at) {
+        for_pixels(scene_.width, scene_.height, [&](std::uint32_t i, std::size_t at) {
             const shared::float4 &m = host_->sums.mean[i], &d = host_->sums.deviation[i];
             (*to[0])[at] = m.x, (*to[1])[at] = m.y, (*to[2])[at] = m.z, (*to[3])[at] = m.w;
             const auto variance = [scale = scale, rest = rest](float v) {
@@ -478,7 +451,7 @@ void RenderSession::lay_background(Frame& frame, const Background& background) {
     }
     std::array<std::vector<float>*, 3> below{&frame.channel("background.R"), &frame.channel("background.G"),
                                              &frame.channel("background.B")};
-    for_pixels(numbers_, frame.width, frame.height, [&](std::uint32_t i, std::size_t at) {
+    for_pixels(frame.width, frame.height, [&](std::uint32_t i, std::size_t at) {
         (*below[0])[at] = under[i].x, (*below[1])[at] = under[i].y, (*below[2])[at] = under[i].z;
     });
     for (const std::string picture : {"", "noisy."}) {
@@ -508,9 +481,9 @@ Frame render(RenderSession& session, const Scene& scene, const RenderControl& co
     return session.frame(scene.background);
 }
 
-Frame render(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment,
+Frame render(const std::vector<Device>& devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment,
              const RenderControl& control) {
-    RenderSession session(std::move(devices), volume, scene, environment);
+    RenderSession session(devices, volume, scene, environment);
     return render(session, scene, control);
 }
 

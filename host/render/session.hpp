@@ -3,12 +3,12 @@
 #pragma once
 #include "host/frame/film.hpp"
 #include "host/frame/frame.hpp"
+#include "host/render/classified.hpp"
 #include "host/render/environment.hpp"
 #include "host/render/marcher.hpp"
 #include "host/render/path_tracer.hpp"
 #include "host/render/scene.hpp"
 #include "host/render/sky_split.hpp"
-#include "host/volume/bricks.hpp"
 #include "runtime/dealer.hpp"
 #include "runtime/device.hpp"
 
@@ -34,25 +34,19 @@ struct RenderControl {
     std::function<void(const RenderProgress&)> progress; ///< called from the calling thread or a worker, now and then
 };
 
-/// The volume's part that no scene changes, computed once: majorant ranges.
-struct PreparedVolume {
-    Voxels voxels;
-    MajorantGrid grid;
-    explicit PreparedVolume(Voxels v) : voxels(std::move(v)), grid(majorant_grid(voxels)) {}
-};
-
 /// The same bits however samples are split into calls, whatever was set in between, on one device or several. A device that fails is left
 /// out with a warning, and the others do its work; the last one's failure is thrown. Not for several threads at once.
 class RenderSession {
 public:
-    explicit RenderSession(std::vector<Device> devices);
+    explicit RenderSession(const std::vector<Device>& devices);
     /// With set_scene.
-    RenderSession(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {},
-                  bool steady = false);
+    RenderSession(const std::vector<Device>& devices, const PreparedVolume& volume, const Scene& scene,
+                  const EnvironmentTables& environment = {}, bool steady = false);
     ~RenderSession();
 
     /// The setters, in this order the first time. Later each may be called alone: it writes only its own part to the devices, and the
-    /// picture starts anew. What is given outlives the session. They throw Error.
+    /// picture starts anew. They throw Error.
+    /// The volume outlives the session.
     void set_volume(const PreparedVolume& volume);
     /// Uploads transfer table, majorants and those bricks that become visible.
     void set_appearance(const Appearance& appearance);
@@ -93,9 +87,8 @@ public:
 private:
     struct Worker;
     struct HostSums;
-    std::vector<Device> all_;
     Dealer dealer_;
-    std::vector<std::unique_ptr<Worker>> workers_; // by device; null for one that failed at once
+    std::vector<std::unique_ptr<Worker>> workers_; // by device
     std::mutex progress_;
     const PreparedVolume* volume_ = nullptr;
     Scene scene_; // as set; of it no more than the parts that setters take
@@ -112,8 +105,8 @@ private:
 
     int samples_ = 0, resolved_ = 0;       // of the picture; of those, in the planes
     bool traced_ = false;                  // the samples are paths, not a march's rays
-    std::vector<std::string> marched_;     // channels that are there from a march
-    int rays_ = 0;                         // of the march
+    std::vector<std::string> marched_;     // features that are there
+    int rays_ = 0;                         // a pixel, of the features
     std::unique_ptr<Film> film_;           // where the picture is kept on the device,
     std::optional<PixelSums> sums_, next_; // with the sums of whole passes, and of the pass that runs
     std::unique_ptr<HostSums> host_;       // else where it is kept on the host
@@ -134,7 +127,7 @@ void take(RenderSession& session, const Scene& scene, const RenderControl& contr
 /// The same, and the frame over the scene's background. `frame.attributes` gets "clvr.spp" (samples reached).
 Frame render(RenderSession& session, const Scene& scene, const RenderControl& control = {});
 /// A session's whole life for one picture.
-Frame render(std::vector<Device> devices, const PreparedVolume& volume, const Scene& scene, const EnvironmentTables& environment = {},
-             const RenderControl& control = {});
+Frame render(const std::vector<Device>& devices, const PreparedVolume& volume, const Scene& scene,
+             const EnvironmentTables& environment = {}, const RenderControl& control = {});
 
 } // namespace clvr

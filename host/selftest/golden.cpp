@@ -96,10 +96,10 @@ Scene golden_scene(const std::string& name) {
     return s;
 }
 
-Frame render_golden(const std::string& name, std::vector<Device> devices, const RenderControl& control) {
+Frame render_golden(const std::string& name, const std::vector<Device>& devices, const RenderControl& control) {
     const Scene scene = golden_scene(name);
     const bool image = scene.light.environment == Light::Environment::image;
-    return clvr::render(std::move(devices), golden_volume(), scene, image ? golden_environment() : EnvironmentTables{}, control);
+    return clvr::render(devices, golden_volume(), scene, image ? golden_environment() : EnvironmentTables{}, control);
 }
 
 Frame golden_noisy_frame() {

@@ -12,7 +12,7 @@ const PreparedVolume& golden_volume();
 
 /// The scene of that name among golden_hashes.
 Scene golden_scene(const std::string& name);
-Frame render_golden(const std::string& name, std::vector<Device> devices, const RenderControl& control = {});
+Frame render_golden(const std::string& name, const std::vector<Device>& devices, const RenderControl& control = {});
 
 /// 70x45 pixels with every channel that golden_network() reads, hard edges, partial opacity and variances.
 Frame golden_noisy_frame();

@@ -94,11 +94,7 @@ struct Stage {
     shared::RenderParams render;
 
     Stage(Voxels v, Scene s, EnvironmentTables e = {}) : volume(std::move(v)), scene(std::move(s)), environment(std::move(e)) {
-        const auto [low, high] = std::minmax_element(volume.grid.range.begin(), volume.grid.range.end());
-        classified.voxels = &volume.voxels;
-        classified.grid = &volume.grid;
-        classified.table = tabulate(scene.transfer.value(), volume.voxels, *low, *high);
-        classified.majorants = majorants(volume.grid, classified.table);
+        classified = classify(volume, scene.transfer);
         render = render_params(scene, volume.voxels, resolve_view(scene, {{0, 0, 0}}, false), environment);
     }
     Stage(const Stage&) = delete;

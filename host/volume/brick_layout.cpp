@@ -160,11 +160,4 @@ void pack_bricks(const Voxels& v, const BrickLayout& layout, const std::vector<s
     }
 }
 
-void pack_pool(const Voxels& v, const BrickLayout& layout, int pool, std::size_t piece_bytes, const PackSink& sink) {
-    std::vector<std::size_t> bricks;
-    for (std::size_t b = 0; b < layout.offset.size(); ++b)
-        if (layout.offset[b] != BrickLayout::absent && layout.pool[b] == static_cast<std::uint32_t>(pool)) bricks.push_back(b);
-    pack_bricks(v, layout, bricks, piece_bytes, sink);
-}
-
 } // namespace clvr

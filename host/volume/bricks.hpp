@@ -85,8 +85,6 @@ BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::v
 using PackSink = std::function<void(const unsigned char* bytes, std::size_t size, std::size_t offset)>;
 void pack_bricks(const Voxels& v, const BrickLayout& layout, const std::vector<std::size_t>& bricks, std::size_t piece_bytes,
                  const PackSink& sink);
-/// All bricks of a pool.
-void pack_pool(const Voxels& v, const BrickLayout& layout, int pool, std::size_t piece_bytes, const PackSink& sink);
 
 /// The box of index positions, inside [-0.5, n-0.5], that holds every voxel whose opacity is above `threshold` with its trilinear
 /// reach (one voxel more on each side); empty (low > high) when none is. Reads only voxels of cells with majorant > threshold.

@@ -1,6 +1,7 @@
 // Marches of a stage, and what they should give.
 #pragma once
 #include "host/render/marcher.hpp"
+#include "host/render/pixel_numbers.hpp"
 #include "tests/reference/march.hpp"
 #include "tests/render/scenes.hpp"
 
@@ -19,7 +20,7 @@ inline Marched march(Device& device, const Stage& stage, March kind = March::fea
     const DeviceVolume volume = stage.upload(device);
     const DeviceLights light(device, stage.render, stage.environment);
     Marched m;
-    m.numbers = (stage.scene.width + 3u) / 4 * ((stage.scene.height + 3u) / 4) * 16;
+    m.numbers = pixel_numbers(stage.scene.width, stage.scene.height);
     m.planes.resize(static_cast<std::size_t>(m.numbers) * march_planes(kind));
     const SkySplit split = split_sky(stage.render, stage.environment);
     const KeyLights keys(device, key_lights(stage.render, split));

@@ -101,8 +101,7 @@ TEST(Setters, GiveTheBitsOfASessionMadeForIt) {
     scene.seed = 9, scene.view = 4, scene.bounces = 2, scene.camera.elevation = 60;
     session.set_view(scene);
     expect("view", volume);
-    session.set_volume(other);
-    session.set_appearance(scene);
+    session.set_volume(other); // alone: the appearance stays
     expect("volume", other);
 }
 

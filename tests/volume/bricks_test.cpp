@@ -15,11 +15,18 @@ using namespace clvr::testing;
 
 constexpr std::size_t no_limit = std::size_t{1} << 40;
 
+std::vector<std::size_t> bricks_of(const BrickLayout& layout, int pool) {
+    std::vector<std::size_t> bricks;
+    for (std::size_t b = 0; b < layout.offset.size(); ++b)
+        if (layout.offset[b] != BrickLayout::absent && layout.pool[b] == static_cast<std::uint32_t>(pool)) bricks.push_back(b);
+    return bricks;
+}
+
 std::vector<std::vector<unsigned char>> packed(const Voxels& v, const BrickLayout& layout, std::size_t piece_bytes) {
     std::vector<std::vector<unsigned char>> pools;
     for (int p = 0; p < layout.pools; ++p) {
         std::vector<unsigned char> bytes;
-        pack_pool(v, layout, p, piece_bytes, [&](const unsigned char* from, std::size_t size, std::size_t offset) {
+        pack_bricks(v, layout, bricks_of(layout, p), piece_bytes, [&](const unsigned char* from, std::size_t size, std::size_t offset) {
             EXPECT_LE(size, piece_bytes);
             EXPECT_EQ(offset, bytes.size());
             bytes.insert(bytes.end(), from, from + size);
@@ -152,7 +159,8 @@ TEST(Bricks, OfAnInvisibleVolumeTakeNothing) {
     EXPECT_EQ(layout.present(), 0u);
     EXPECT_EQ(layout.pools, 1);
     EXPECT_EQ(layout.pool_bytes, std::vector<std::size_t>{0});
-    pack_pool(v, layout, 0, 100, [](const unsigned char*, std::size_t, std::size_t) { ADD_FAILURE() << "nothing to pack"; });
+    pack_bricks(v, layout, bricks_of(layout, 0), 100,
+                [](const unsigned char*, std::size_t, std::size_t) { ADD_FAILURE() << "nothing to pack"; });
 }
 
 TEST(Bricks, TakeAtMostAThirdMoreThanTheVoxels) {

@@ -1,6 +1,7 @@
 #include "tools/bench/bench_scene.hpp"
 
 #include "host/render/params.hpp"
+#include "host/render/pixel_numbers.hpp"
 #include "host/render/view.hpp"
 
 #include <map>
@@ -56,10 +57,9 @@ Scene benchmark_scene(int width, int height, int spp) {
 }
 
 SceneOnDevice::SceneOnDevice(Device& device, const PreparedVolume& prepared, const Scene& scene)
-    : pixels((scene.width + 3u) / 4 * ((scene.height + 3u) / 4) * 16) {
+    : pixels(pixel_numbers(scene.width, scene.height)) {
     const Voxels& voxels = prepared.voxels;
-    classified = {&voxels, &prepared.grid, tabulate(*scene.transfer, voxels, 0, 255), {}};
-    classified.majorants = majorants(prepared.grid, classified.table);
+    classified = classify(prepared, scene.transfer);
     const BrickLayout layout = device_layout(device, classified);
     volume_params = clvr::volume_params(scene, voxels, prepared.grid, classified.table, layout);
     const auto outline = visible_outline(voxels.geometry, prepared.grid, classified.majorants, {}, clip_box_index(scene, voxels));
