@@ -1,6 +1,6 @@
+#include "host/frame/display_pixels.hpp"
 #include "host/io/atomic_file.hpp"
 #include "host/io/file_roles.hpp"
-#include "host/io/picture/display_pixels.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 
