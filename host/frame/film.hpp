@@ -23,6 +23,8 @@ public:
     Device& device() { return device_; }
     bool is_on(const Device& device) const;
 
+    /// Of the planes, in order.
+    const std::vector<std::string>& names() const { return names_; }
     /// Number of the plane, -1 when there is none.
     int find(const std::string& name) const {
         const auto at = std::find(names_.begin(), names_.end(), name);

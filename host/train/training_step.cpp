@@ -180,7 +180,7 @@ int TrainingStep::add_image(const Frame& noisy, const Frame& target) {
     if (noisy.width < s.config.patch || noisy.height < s.config.patch)
         throw Error(ErrorKind::input,
                     fmt::format("is {} x {} pixels, smaller than a patch of {}", noisy.width, noisy.height, s.config.patch));
-    TrainingImage image{noisy.width, noisy.height, s.plan.params(s.start.exposure ? exposure_of(noisy) : 1), {}};
+    TrainingImage image{noisy.width, noisy.height, s.plan.params(noisy), {}};
     s.plan.gather(noisy, &target, {0, 0, noisy.width, noisy.height}, s.plan.known_light(noisy), image.planes);
     std::vector<std::shared_ptr<const Buffer>> uploaded(s.replicas.size());
     s.dealer.each([&](std::size_t k) {
