@@ -1,11 +1,11 @@
 #include "host/cli/render_options.hpp"
+#include "host/appearance/srgb.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/volume_options.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/scene/scene_file.hpp"
-#include "host/volume/srgb.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <fmt/format.h>
 

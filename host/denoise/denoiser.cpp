@@ -1,8 +1,8 @@
 #include "host/denoise/denoiser.hpp"
 #include "host/denoise/neural_grid.hpp"
 #include "host/denoise/tunables.hpp"
-#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/schedule/dealer.hpp"
 
 #include <algorithm>
 #include <cmath>

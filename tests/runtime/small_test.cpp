@@ -1,9 +1,9 @@
 // Sizes, statuses, the account, the profile.
-#include "runtime/account.hpp"
-#include "runtime/check.hpp"
-#include "runtime/profile.hpp"
-#include "runtime/sha256.hpp"
-#include "runtime/size.hpp"
+#include "runtime/drivers/check.hpp"
+#include "runtime/opencl/account.hpp"
+#include "runtime/opencl/profile.hpp"
+#include "runtime/system/sha256.hpp"
+#include "runtime/system/size.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>
