@@ -146,7 +146,7 @@ void RenderSession::set_size(int width, int height) {
     restart();
     view_set_ = false;
     numbers_ = pixel_numbers(width, height);
-    film_.reset(), host_.reset(), sums_.reset(), next_.reset();
+    film_.reset(), host_.reset(), sums_.reset(), next_.reset(), display_.reset();
     for (const std::size_t k : dealer_.left()) workers_[k]->tracer.reset();
 }
 
@@ -190,7 +190,7 @@ void RenderSession::prepare_view() {
         else
             w.lights.emplace(w.device, params_, environment_);
     });
-    view_set_ = true;
+    view_set_ = true, behind_set_ = false;
 }
 
 /// The key lights of this view, and after another volume, appearance or environment the sky's light in the volume.
@@ -433,6 +433,32 @@ Frame RenderSession::frame(const Background& background, bool beauty_alone) {
     return frame;
 }
 
+DisplayPixels RenderSession::picture(const Background& background, const Tonemap& tonemap, bool alpha) {
+    if (samples_ == 0) throw Error(ErrorKind::internal, "there are no samples yet", "RenderSession::picture");
+    if (!film_) return display_pixels(frame(background, true), tonemap, alpha);
+    resolve();
+    Device& device = film_->device();
+    if (!display_) display_.emplace(device);
+    Behind behind;
+    if (background.kind == Background::Kind::color) {
+        const auto& c = background.color;
+        behind.opaque = true;
+        behind.colour = {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), 0};
+    } else if (background.kind == Background::Kind::environment) {
+        const std::size_t bytes = numbers_ * sizeof(shared::float4);
+        if (behind_.bytes() != bytes) behind_ = device.buffer(bytes, "background");
+        if (!std::exchange(behind_set_, true)) see_environment(*workers_[dealer_.left().front()], 0, numbers_, behind_);
+        behind.picture = &behind_;
+    }
+    return display_->show(*film_, behind, tonemap, alpha);
+}
+
+/// The environment behind the pixels [count], float4 each.
+void RenderSession::see_environment(Worker& w, std::uint32_t first, std::uint32_t count, Buffer& out) {
+    Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
+    w.device.launch(kernel, {count}, kernel.group(64), {}, w.lights->arguments(), first, count, out);
+}
+
 void RenderSession::lay_background(Frame& frame, const Background& background) {
     if (background.kind == Background::Kind::transparent) return;
     std::vector<shared::float4> under(numbers_);
@@ -443,9 +469,8 @@ void RenderSession::lay_background(Frame& frame, const Background& background) {
     } else {
         dealer_.deal("background", numbers_, 1, march_portions(), [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
             Worker& w = *workers_[k];
-            Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
             Buffer out = w.device.buffer(count * sizeof(shared::float4), "background");
-            w.device.launch(kernel, {count}, kernel.group(64), {}, w.lights->arguments(), first, count, out);
+            see_environment(w, first, count, out);
             w.device.read(out, &under[first], count * sizeof(shared::float4));
         });
     }

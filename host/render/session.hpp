@@ -6,6 +6,7 @@
 #include "host/frame/film.hpp"
 #include "host/frame/frame.hpp"
 #include "host/render/classified.hpp"
+#include "host/render/display.hpp"
 #include "host/render/marcher.hpp"
 #include "host/render/path_tracer.hpp"
 #include "host/render/scene.hpp"
@@ -76,6 +77,10 @@ public:
     /// unless that is transparent. `beauty_alone`: without features, variances and the noisy picture.
     Frame frame(const Background& background = {}, bool beauty_alone = false);
 
+    /// The same picture over the background as a display shows it. From the device come 4 bytes a pixel, where the picture is kept there.
+    /// With `alpha` as for display_pixels.
+    DisplayPixels picture(const Background& background, const Tonemap& tonemap, bool alpha);
+
     /// Composites R G B of this picture, and noisy.R G B beside it, over the background: C + (1 - A) B, with B in background.R/G/B.
     void lay_background(Frame& frame, const Background& background);
 
@@ -110,6 +115,9 @@ private:
     std::unique_ptr<Film> film_;           // where the picture is kept on the device,
     std::optional<PixelSums> sums_, next_; // with the sums of whole passes, and of the pass that runs
     std::unique_ptr<HostSums> host_;       // else where it is kept on the host
+    std::optional<Display> display_;       // of the film
+    Buffer behind_;                        // the environment as the view shows it, for the display
+    bool behind_set_ = false;
 
     void prepare_view();
     void prepare_light();
@@ -119,6 +127,7 @@ private:
     bool march(March kind, int rays, bool lit, const RenderControl& control);
     std::vector<Dealer::Portion> march_portions() const;
     void resolve();
+    void see_environment(Worker& w, std::uint32_t first, std::uint32_t count, Buffer& out);
 };
 
 /// Brings a session to a scene of which it has set all but spp, mode and features: features when wanted, then samples or a march. Throws

@@ -1,4 +1,4 @@
-#include "host/io/picture/display_pixels.hpp"
+#include "host/frame/display_pixels.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/atomic_file.hpp"

@@ -1,5 +1,5 @@
+#include "host/frame/display_pixels.hpp"
 #include "host/io/file_roles.hpp"
-#include "host/io/picture/display_pixels.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/atomic_file.hpp"
