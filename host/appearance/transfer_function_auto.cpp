@@ -1,5 +1,5 @@
-#include "host/appearance/srgb.hpp"
 #include "host/appearance/transfer_function.hpp"
+#include "host/frame/srgb.hpp"
 #include "host/volume/value_statistics.hpp"
 #include "host/volume/vec.hpp"
 

@@ -1,6 +1,6 @@
 #include "host/appearance/transfer_function_json.hpp"
-#include "host/appearance/srgb.hpp"
 #include "host/appearance/transfer_function.hpp"
+#include "host/frame/srgb.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/json_fields.hpp"
 

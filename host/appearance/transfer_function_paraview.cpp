@@ -1,5 +1,5 @@
-#include "host/appearance/srgb.hpp"
 #include "host/appearance/transfer_function_json.hpp"
+#include "host/frame/srgb.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/json_fields.hpp"
 

@@ -16,7 +16,7 @@
 #include "host/render/session.hpp"
 #include "runtime/system/atomic_file.hpp"
 #include "runtime/system/embedded.hpp"
-#include "runtime/system/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 #include "runtime/system/signals.hpp"
 
 #include <fmt/format.h>

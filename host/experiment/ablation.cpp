@@ -7,8 +7,8 @@
 #include "host/pairs/folder.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/atomic_file.hpp"
+#include "runtime/system/hashes.hpp"
 #include "runtime/system/json_text.hpp"
-#include "runtime/system/sha256.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -3,6 +3,7 @@
 #include "host/volume/vec.hpp"
 #include "host/volume/voxels.hpp"
 #include "kernels/shared/phantom.h"
+#include "runtime/system/split_mix.hpp"
 
 #include <algorithm>
 #include <string>
@@ -40,16 +41,11 @@ MadeVolume fibres_volume(std::uint64_t seed);
 MadeVolume skull_volume(std::uint64_t seed);
 MadeVolume machine_volume(std::uint64_t seed);
 
-/// Numbers 0..1, the same everywhere (S. Vigna's splitmix64).
+/// Numbers 0..1, the same everywhere.
 class Chance {
 public:
-    explicit Chance(std::uint64_t seed) : state_(seed) {}
-    double operator()() {
-        std::uint64_t z = state_ += 0x9e3779b97f4a7c15u;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-    }
+    explicit Chance(std::uint64_t seed) : numbers_(seed) {}
+    double operator()() { return numbers_.uniform(); }
     double between(double low, double high) { return low + (high - low) * (*this)(); }
     /// Uniform on the unit sphere.
     Double3 direction() {
@@ -60,7 +56,7 @@ public:
     }
 
 private:
-    std::uint64_t state_;
+    SplitMix64 numbers_;
 };
 
 /// A point of a tube's path and the tube's radius there.

@@ -2,7 +2,7 @@
 #include "host/selftest/check.hpp"
 #include "host/selftest/golden_values.hpp"
 #include "kernels/shared/struct_fields.h"
-#include "runtime/system/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 #include "runtime/trust/trust.hpp"
 
 #include <fmt/format.h>

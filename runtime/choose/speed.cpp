@@ -4,7 +4,7 @@
 #include "runtime/opencl/device.hpp"
 #include "runtime/opencl/fault.hpp"
 #include "runtime/system/folders.hpp"
-#include "runtime/system/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

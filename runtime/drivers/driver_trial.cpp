@@ -3,7 +3,7 @@
 #include "runtime/drivers/check.hpp"
 #include "runtime/drivers/facts.hpp"
 #include "runtime/system/folders.hpp"
-#include "runtime/system/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 #include "runtime/system/temporary.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "runtime/opencl/program_cache.hpp"
 
 #include "runtime/system/folders.hpp"
-#include "runtime/system/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,5 +1,5 @@
 #include "runtime/system/folders.hpp"
-#include "runtime/system/temporary.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -66,16 +66,12 @@ std::optional<std::string> load_file(const fs::path& path) {
 bool replace_file(const fs::path& path, std::string_view bytes) {
     std::error_code failed;
     fs::create_directories(path.parent_path(), failed);
-    remove_stale_files(path.parent_path().string());
-    Temporary temporary = Temporary::file_in(path.parent_path().string());
-    if (temporary.path().empty()) return false;
-    std::ofstream file(temporary.path(), std::ios::binary);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (file) fs::rename(temporary.path(), path, failed);
-    if (!file || failed) return false;
-    temporary.give_up();
-    return true;
+    try {
+        write_atomically(path.string(), bytes.data(), bytes.size());
+        return true;
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 } // namespace clvr

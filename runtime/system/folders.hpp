@@ -25,8 +25,7 @@ std::optional<std::string> load_file(const std::filesystem::path& path);
 /// Warns that a file of clvr's own is ignored because of this error: each line once in the life of the process.
 void warn_of_ignored_file(const Error& error);
 
-/// Writes beside `path` under a name that nobody else uses, then renames: readers see either the old file or the new one. Returns false
-/// when that fails; then nothing is left behind.
+/// Makes the folder if needed and writes the file by `write_atomically`. Returns false when that fails; then nothing is left behind.
 bool replace_file(const std::filesystem::path& path, std::string_view bytes);
 
 } // namespace clvr

@@ -6,7 +6,8 @@
 #include "runtime/opencl/program_cache.hpp"
 #include "runtime/opencl/source.hpp"
 #include "runtime/system/folders.hpp"
-#include "runtime/system/sha256.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/system/split_mix.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -34,15 +35,10 @@ float from_bits(std::uint32_t x) {
     return result;
 }
 
-/// splitmix64 (Steele, Lea, Flood 2014): the operands are the same in every run.
+/// The operands are the same in every run.
 class Random {
 public:
-    std::uint32_t next() {
-        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return static_cast<std::uint32_t>((z ^ (z >> 31)) >> 32);
-    }
+    std::uint32_t next() { return static_cast<std::uint32_t>(numbers_.next() >> 32); }
     /// 2^low <= |x| < 2^(high + 1), all mantissas.
     float normal(int low, int high, bool negative) {
         const std::uint32_t exponent = static_cast<std::uint32_t>(127 + low) + next() % static_cast<std::uint32_t>(high - low + 1);
@@ -51,7 +47,7 @@ public:
     bool coin() { return next() >> 31; }
 
 private:
-    std::uint64_t state_ = 2026;
+    SplitMix64 numbers_{2026};
 };
 
 struct Operands {

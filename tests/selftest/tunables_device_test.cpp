@@ -4,7 +4,7 @@
 #include "host/selftest/golden.hpp"
 #include "host/train/tunables.hpp"
 #include "runtime/choose/select.hpp"
-#include "runtime/system/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 #include "runtime/trust/trust.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 #pragma once
 #include "host/phantom/phantom.hpp"
 #include "runtime/choose/select.hpp"
-#include "runtime/system/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 #include "runtime/trust/trust.hpp"
 #include "tests/reference/volume.hpp"
 

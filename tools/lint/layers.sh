@@ -25,7 +25,7 @@ only runtime/trust runtime/error.hpp runtime/system/ runtime/drivers/ runtime/op
 only runtime/choose runtime/error.hpp runtime/system/ runtime/drivers/ runtime/tune/ runtime/opencl/ runtime/trust/ runtime/choose/
 only runtime/schedule runtime/error.hpp runtime/system/ runtime/drivers/ runtime/opencl/ runtime/schedule/
 only host/volume runtime/ host/volume/ kernels/shared/
-only host/appearance runtime/ host/volume/ host/appearance/ kernels/shared/
+only host/appearance runtime/ host/volume/ host/frame/ host/appearance/ kernels/shared/
 only host/phantom runtime/ host/volume/ host/phantom/ kernels/shared/
 only host/frame runtime/ host/frame/
 only host/render runtime/ host/volume/ host/appearance/ host/frame/ host/render/ kernels/shared/

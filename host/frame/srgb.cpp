@@ -1,4 +1,4 @@
-#include "host/appearance/srgb.hpp"
+#include "host/frame/srgb.hpp"
 
 #include <algorithm>
 #include <cmath>
