@@ -1,10 +1,10 @@
 #include "runtime/program_end.hpp"
 
+#include "runtime/drivers/quirks.hpp"
 #include "runtime/error.hpp"
-#include "runtime/quirks.hpp"
-#include "runtime/signals.hpp"
-#include "runtime/standard_streams.hpp"
-#include "runtime/temporary.hpp"
+#include "runtime/system/signals.hpp"
+#include "runtime/system/standard_streams.hpp"
+#include "runtime/system/temporary.hpp"
 
 #include <csignal>
 #include <cstdio>

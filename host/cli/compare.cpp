@@ -6,7 +6,7 @@
 #include "host/frame/metrics.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <cmath>
 #include <filesystem>

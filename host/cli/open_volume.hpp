@@ -1,7 +1,7 @@
 // The volume that a command works on: a file, a folder, or one that clvr computes.
 #pragma once
 #include "host/io/volume/volume_file.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <string>
 #include <vector>

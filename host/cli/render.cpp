@@ -7,7 +7,6 @@
 #include "host/cli/render_options.hpp"
 #include "host/denoise/channels.hpp"
 #include "host/denoise/denoiser.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
@@ -15,9 +14,10 @@
 #include "host/io/scene/scene_inputs.hpp"
 #include "host/render/params.hpp"
 #include "host/render/session.hpp"
-#include "runtime/embedded.hpp"
-#include "runtime/sha256.hpp"
-#include "runtime/signals.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/embedded.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/system/signals.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -2,10 +2,10 @@
 #include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/volume_options.hpp"
-#include "host/io/atomic_file.hpp"
+#include "host/frame/srgb.hpp"
 #include "host/io/scene/scene_file.hpp"
-#include "host/volume/srgb.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 #include "host/cli/commands.hpp"
 
 #include "host/selftest/selftest.hpp"
+#include "runtime/choose/select.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
-#include "runtime/select.hpp"
-#include "runtime/signals.hpp"
+#include "runtime/system/json_text.hpp"
+#include "runtime/system/signals.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,7 @@
 // The classical denoisers that the network is measured against.
 #pragma once
 #include "host/frame/frame.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 namespace clvr {
 

@@ -2,8 +2,8 @@
 #include "host/denoise/neural_grid.hpp"
 #include "host/denoise/picture_light.hpp"
 #include "host/denoise/tunables.hpp"
-#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/schedule/dealer.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "host/denoise/model.hpp"
 #include "host/frame/film.hpp"
 #include "host/frame/frame.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <memory>
 #include <string>

@@ -1,6 +1,7 @@
 #include "host/denoise/model.hpp"
 #include "kernels/shared/denoise_params.h"
 #include "runtime/error.hpp"
+#include "runtime/system/split_mix.hpp"
 
 #include <algorithm>
 #include <array>
@@ -31,17 +32,6 @@ auto tensors_of(Tensors& m) {
 void check_range(const char* name, int value, int low, int high) {
     if (value < low || value > high) fail(fmt::format("model: {} is {}; expected {} to {}", name, value, low, high));
 }
-
-/// Uniform numbers in [0, 1) from a counter: SplitMix64 (Steele, Lea, Flood 2014), the top 24 bits.
-struct Uniform {
-    std::uint64_t state;
-    double operator()() {
-        std::uint64_t z = state += 0x9e3779b97f4a7c15u;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return static_cast<double>((z ^ (z >> 31)) >> 40) / (1 << 24);
-    }
-};
 
 } // namespace
 
@@ -78,7 +68,8 @@ void Model::set_flat(const std::vector<float>& values) {
 void initialise(Model& m, std::uint64_t seed) {
     const std::size_t taps = static_cast<std::size_t>(m.kernel) * m.kernel, in = m.channels.size(),
                       hidden = static_cast<std::size_t>(m.hidden), out = static_cast<std::size_t>(m.outputs());
-    Uniform uniform{seed};
+    SplitMix64 numbers(seed);
+    const auto uniform = [&] { return static_cast<double>(numbers.next() >> 40) / (1 << 24); };
     const auto glorot = [&](std::vector<float>& to, std::size_t from, std::size_t count) {
         const double limit = std::sqrt(6.0 / static_cast<double>(taps * (from + count)));
         to.resize(taps * from * count);

@@ -2,7 +2,7 @@
 #pragma once
 #include "host/denoise/channels.hpp"
 #include "host/denoise/model.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <vector>
 

@@ -1,14 +1,14 @@
 #include "host/experiment/ablation.hpp"
 #include "host/eval/evaluation_json.hpp"
-#include "host/experiment/settled_folder.hpp"
 #include "host/experiment/stage_times.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
-#include "host/train/pairs.hpp"
+#include "host/io/settled_folder.hpp"
+#include "host/pairs/folder.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
-#include "runtime/sha256.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,8 +1,8 @@
 #include "host/experiment/measurement.hpp"
 #include "host/eval/evaluation_json.hpp"
-#include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 #include "host/frame/display_pixels.hpp"
+#include "host/frame/srgb.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -79,7 +80,7 @@ Frame frame_of(const DisplayPixels& pixels) {
     Frame frame;
     frame.width = pixels.width, frame.height = pixels.height;
     std::array<float, 256> linear;
-    for (std::size_t v = 0; v < linear.size(); ++v) linear[v] = static_cast<float>(srgb_decoded(static_cast<double>(v) / 255));
+    for (std::size_t v = 0; v < linear.size(); ++v) linear[v] = static_cast<float>(srgb_decode(static_cast<double>(v) / 255));
     const char* const names[] = {"R", "G", "B", "A"};
     const std::size_t components = static_cast<std::size_t>(pixels.components);
     for (std::size_t c = 0; c < components; ++c) {

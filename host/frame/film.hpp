@@ -1,7 +1,7 @@
 // A picture with its channels on a device.
 #pragma once
 #include "host/frame/frame.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,8 +1,9 @@
 // A volume and its classification on one device: the arguments VOLUME_ARGS of the kernels.
 #pragma once
 #include "host/render/classified.hpp"
+#include "host/volume/brick_layout.hpp"
 #include "kernels/shared/volume_params.h"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 namespace clvr {
 

@@ -1,7 +1,7 @@
 // Direct light for the features on one device: what the marcher needs for it.
 #pragma once
+#include "host/appearance/sky_split.hpp"
 #include "host/render/device_volume.hpp"
-#include "host/render/sky_split.hpp"
 
 namespace clvr {
 

@@ -2,8 +2,8 @@
 #include "host/render/params.hpp"
 #include "host/render/pixel_numbers.hpp"
 #include "host/render/tunables.hpp"
-#include "runtime/host_memory.hpp"
-#include "runtime/size.hpp"
+#include "runtime/system/host_memory.hpp"
+#include "runtime/system/size.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,17 +1,17 @@
 // A volume on one device or several, ready to be seen: what changes is set alone, samples are added where they stopped, and the picture
 // stays on the device until somebody wants its pixels.
 #pragma once
+#include "host/appearance/environment.hpp"
+#include "host/appearance/sky_split.hpp"
 #include "host/frame/film.hpp"
 #include "host/frame/frame.hpp"
 #include "host/render/classified.hpp"
 #include "host/render/display.hpp"
-#include "host/render/environment.hpp"
 #include "host/render/marcher.hpp"
 #include "host/render/path_tracer.hpp"
 #include "host/render/scene.hpp"
-#include "host/render/sky_split.hpp"
-#include "runtime/dealer.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
+#include "runtime/schedule/dealer.hpp"
 
 #include <atomic>
 #include <functional>

@@ -1,7 +1,7 @@
 #include "host/train/training_step.hpp"
 #include "host/train/replica.hpp"
-#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/schedule/dealer.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>

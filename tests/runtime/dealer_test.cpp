@@ -1,5 +1,5 @@
 // Sharing work among workers that are no devices: every number once, by speed, also when some fail.
-#include "runtime/dealer.hpp"
+#include "runtime/schedule/dealer.hpp"
 #include "tests/runtime/warnings.hpp"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
 
 #include "runtime/error.hpp"
 #include "tests/runtime/scoped.hpp"

@@ -1,11 +1,11 @@
 // Training: gradients against finite differences, the same bits however the work is divided, interruption, overfitting, what is refused.
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
+#include "host/pairs/folder.hpp"
 #include "host/train/checkpoint.hpp"
-#include "host/train/pairs.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 #include "tests/denoise/batches.hpp"
 #include "tests/runtime/faulty_devices.hpp"
 #include "tests/runtime/scoped.hpp"

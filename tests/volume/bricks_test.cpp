@@ -1,4 +1,4 @@
-#include "host/volume/bricks.hpp"
+#include "host/volume/brick_layout.hpp"
 #include "runtime/error.hpp"
 #include "tests/reference/volume.hpp"
 #include "tests/volume/random_volume.hpp"

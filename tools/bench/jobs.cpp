@@ -1,7 +1,7 @@
 #include "tools/bench/jobs.hpp"
 
 #include "runtime/error.hpp"
-#include "runtime/tuning.hpp"
+#include "runtime/tune/tuning.hpp"
 #include "tools/bench/ceiling.hpp"
 #include "tools/bench/stage.hpp"
 
@@ -95,7 +95,7 @@ json measure_stage(const json& request) {
     row.unit = stage.unit;
     try {
         std::vector<Device> devices;
-        for (const json& name : request.at("devices")) devices.push_back(Device::open(find_device(device_from(name)), true));
+        for (const json& name : request.at("devices")) devices.push_back(Device::open_untested(find_device(device_from(name))));
         const DeviceFacts& facts = devices.front().facts();
         const Size size = request.at("tiny") ? Size::tiny : size_for(facts);
         row.size = size_name(size);
@@ -146,7 +146,7 @@ struct Prepared {
 };
 
 StageRun prepare_with(const DeviceFacts& facts, const Stage& stage, const Tunables& tunables) {
-    std::vector<Device> devices{Device::open(facts, true)};
+    std::vector<Device> devices{Device::open_untested(facts)};
     devices.front().set_tunables(tunables);
     StageRun run = stage.prepare(devices, size_for(facts));
     run.run();

@@ -2,7 +2,7 @@
 #pragma once
 #include "host/denoise/model.hpp"
 #include "host/render/session.hpp"
-#include "runtime/profile.hpp"
+#include "runtime/opencl/profile.hpp"
 
 #include <string>
 #include <vector>

@@ -4,13 +4,14 @@
 #include "host/cli/described/single_values.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
+#include "runtime/choose/remembered.hpp"
+#include "runtime/choose/select.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
 #include "runtime/program_end.hpp"
-#include "runtime/remembered.hpp"
-#include "runtime/select.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_text.hpp"
+#include "runtime/trust/trust.hpp"
 #include "tools/bench/bench.hpp"
 #include "tools/bench/bench_scene.hpp"
 #include "tools/bench/live.hpp"
@@ -110,7 +111,7 @@ void bench_live(const Options& o) {
     if (!o.selector.empty() || facts.empty()) facts = select_devices(o.selector).devices;
     const Model model = read_model("default");
     for (const DeviceFacts& f : facts) {
-        std::vector<Device> devices{Device::open(f)};
+        std::vector<Device> devices{open_trusted(f)};
         Scene scene = benchmark_scene(640, 640, 1);
         if (!o.volume.empty()) scene.transfer.reset();
         const PreparedVolume volume(o.volume.empty() ? benchmark_volume(o.tiny ? 64 : 256) : open_volume(o.volume, {}, devices));

@@ -1,7 +1,7 @@
 #include "host/io/model/model_file.hpp"
 #include "host/io/model/embedded_models.hpp"
-#include "host/volume/json_fields.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/json_fields.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "host/io/atomic_file.hpp"
 #include "host/io/file_roles.hpp"
 #include "host/io/picture/exr_library.hpp"
 #include "host/io/picture/exr_names.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>

@@ -1,9 +1,9 @@
 #include "host/io/scene/scene_file.hpp"
-#include "host/io/atomic_file.hpp"
+#include "host/appearance/transfer_function_json.hpp"
 #include "host/io/volume/dataset_path.hpp"
-#include "host/volume/json_fields.hpp"
-#include "host/volume/transfer_function_json.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_fields.hpp"
 
 #include <algorithm>
 #include <filesystem>
