@@ -4,7 +4,7 @@
 #include "host/denoise/channels.hpp"
 #include "host/denoise/known_light.hpp"
 #include "host/frame/film.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <array>
 #include <vector>

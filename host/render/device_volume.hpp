@@ -36,10 +36,12 @@ private:
 /// How the voxels look on one device: transfer table, majorants, extinction, clip, and where the volume is empty.
 class DeviceAppearance {
 public:
-    /// Waits for the device. Throws Error{memory}.
+    /// Throws Error{memory}.
     DeviceAppearance(Device& device, const Classified& c, const shared::VolumeParams& params, const DeviceBricks& bricks);
     void append_to(BufferList& list) const;
-    /// [VolumeParams::coarse] mean opacity, or minus the distance to the next cell that has some (coarse_opacity.hpp).
+    /// [VolumeParams::coarse] the mean opacity of a cell, where something in it is visible; else minus its distance to the next such cell,
+    /// the greatest of the three along the axes [cells], or to the far side of the grid and one more where there is none. The cells closer
+    /// than that are all empty.
     const Buffer& coarse_opacity() const { return coarse_; }
     const shared::VolumeParams& params() const { return host_params_; }
 

@@ -59,6 +59,14 @@ std::array<float, 2> variance_scale(int samples) {
 
 } // namespace
 
+/// A marcher, and what it was made for.
+struct RenderSession::Marching {
+    March kind;
+    int rays;
+    bool lit;
+    Marcher marcher;
+};
+
 /// One device's share of the work.
 struct RenderSession::Worker {
     Device device;
@@ -67,8 +75,12 @@ struct RenderSession::Worker {
     std::optional<KeyLights> keys;       // of the view
     std::shared_ptr<const SkyLight> sky; // of all views; shared as the volume is
     std::optional<PathTracer> tracer;
+    std::optional<Marching> marching;       // kept for the next view
     std::optional<PixelSums> before, after; // of a portion, while the picture is kept on the host
     bool compared = false;                  // with the others
+
+    /// Before what they refer to goes.
+    void forget_passes() { tracer.reset(), marching.reset(); }
 };
 
 /// The picture on the host.
@@ -81,7 +93,7 @@ struct RenderSession::HostSums {
 };
 
 RenderSession::RenderSession(const std::vector<Device>& devices) : dealer_(devices) {
-    for (const Device& d : devices) workers_.push_back(std::make_unique<Worker>(Worker{d, {}, {}, {}, {}, {}, {}, {}, false}));
+    for (const Device& d : devices) workers_.push_back(std::make_unique<Worker>(Worker{d, {}, {}, {}, {}, {}, {}, {}, {}, false}));
 }
 
 RenderSession::RenderSession(const std::vector<Device>& devices, const PreparedVolume& volume, const Scene& scene,
@@ -95,7 +107,7 @@ RenderSession::~RenderSession() = default;
 void RenderSession::set_volume(const PreparedVolume& volume) {
     volume_ = &volume;
     restart();
-    for (const std::size_t k : dealer_.left()) workers_[k]->tracer.reset(), workers_[k]->sky.reset(), workers_[k]->volume.reset();
+    for (const std::size_t k : dealer_.left()) workers_[k]->forget_passes(), workers_[k]->sky.reset(), workers_[k]->volume.reset();
     if (classified_.voxels) set_appearance(Appearance(scene_)); // another volume under the same one
 }
 
@@ -109,7 +121,7 @@ void RenderSession::set_appearance(const Appearance& appearance) {
         warnings_.push_back("nothing is visible: the transfer function gives every voxel the opacity 0; try another --tf, or `clvr info` "
                             "for the range of the values");
     outline_ = outline_of(classified_, scene_);
-    for (const std::size_t k : dealer_.left()) workers_[k]->sky.reset();
+    for (const std::size_t k : dealer_.left()) workers_[k]->marching.reset(), workers_[k]->sky.reset();
     std::vector<std::size_t> done; // of the devices, in this call
     dealer_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
@@ -137,7 +149,7 @@ void RenderSession::set_lights(const Light& light, const EnvironmentTables& envi
     restart();
     view_set_ = false;
     sky_.reset();
-    for (const std::size_t k : dealer_.left()) workers_[k]->tracer.reset(), workers_[k]->sky.reset(), workers_[k]->lights.reset();
+    for (const std::size_t k : dealer_.left()) workers_[k]->forget_passes(), workers_[k]->sky.reset(), workers_[k]->lights.reset();
 }
 
 void RenderSession::set_size(int width, int height) {
@@ -194,18 +206,21 @@ void RenderSession::prepare_view() {
 }
 
 /// The key lights of this view, and after another volume, appearance or environment the sky's light in the volume.
-void RenderSession::prepare_light() {
+void RenderSession::prepare_light(bool draft) {
     if (!sky_) sky_ = split_sky(params_, environment_);
     const std::vector<shared::KeyLight> keys = key_lights(params_, *sky_);
     dealer_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
-        if (w.keys && w.keys->count() == static_cast<int>(keys.size()))
+        if (w.keys && w.keys->count() == static_cast<int>(keys.size())) {
             w.keys->set(w.device, keys);
-        else
+        } else {
+            w.marching.reset();
             w.keys.emplace(w.device, keys);
+        }
+        if (w.sky && w.sky->is_draft() && !draft) w.marching.reset(), w.sky.reset();
         for (const std::size_t other : dealer_.left())
             if (other < k && !w.sky && workers_[other]->volume == w.volume) w.sky = workers_[other]->sky;
-        if (!w.sky) w.sky = std::make_shared<SkyLight>(w.device, *w.volume, *sky_);
+        if (!w.sky) w.sky = std::make_shared<SkyLight>(w.device, *w.volume, *sky_, draft);
     });
 }
 
@@ -331,7 +346,7 @@ std::vector<Dealer::Portion> RenderSession::march_portions() const {
 
 bool RenderSession::march_features(int rays, const RenderControl& control) {
     const std::vector<std::string> wanted = march_channels(March::features, control.light);
-    if (rays_ == rays && marched_.size() >= wanted.size()) {
+    if (rays_ == rays && marched_.size() >= wanted.size() && (!draft_ || control.draft || !control.light)) {
         marched_.resize(wanted.size());
         return true;
     }
@@ -346,30 +361,35 @@ bool RenderSession::march(March kind, int rays, bool lit, const RenderControl& c
     const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
     prepare_view();
     prepare_picture();
-    if (lit) prepare_light();
+    if (lit) prepare_light(control.draft);
     const std::vector<std::string> names = march_channels(kind, lit);
     // The planes of all features lie together, whichever are wanted first.
     if (film_) film_->require(kind == March::features ? march_channels(kind, true) : beauty_channels);
-    std::vector<std::optional<Marcher>> marchers(workers_.size());
     dealer_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
+        if (w.marching && w.marching->kind == kind && w.marching->rays == rays && w.marching->lit == lit) return;
+        w.marching.reset(); // its memory goes before the next one's is taken
         if (lit)
-            marchers[k].emplace(w.device, *w.volume, *w.lights, *w.keys, *w.sky, rays);
+            w.marching.emplace(Marching{kind, rays, lit, Marcher(w.device, *w.volume, *w.lights, *w.keys, *w.sky, rays)});
         else
-            marchers[k].emplace(w.device, *w.volume, *w.lights, kind, rays);
+            w.marching.emplace(Marching{kind, rays, lit, Marcher(w.device, *w.volume, *w.lights, kind, rays)});
     });
     std::vector<float> planes(film_ ? 0 : names.size() * numbers_);
     dealer_.deal(kind == March::features ? "features" : "march", numbers_, 1, march_portions(),
                  [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
                      if (cancelled) return;
+                     Marcher& marcher = workers_[k]->marching->marcher;
                      if (film_)
-                         marchers[k]->run(first, count, *film_, film_->find(names.front()));
+                         marcher.run(first, count, *film_, film_->find(names.front()));
                      else
-                         marchers[k]->run(first, count, planes, numbers_, first);
+                         marcher.run(first, count, planes, numbers_, first);
                      const std::lock_guard lock(progress_);
                      if (control.progress) control.progress({0, samples_});
                  });
-    if (film_) film_->device().finish(); // before the marchers' buffers go
+    if (film_) film_->device().finish();       // so that a failure is known here
+    for (const std::size_t k : dealer_.left()) // kept for the next view where memory is not short
+        if (workers_[k]->marching && workers_[k]->marching->marcher.bytes() > workers_[k]->device.free_bytes() / 8)
+            workers_[k]->marching.reset();
     if (cancelled) return false;
     for (std::size_t p = 0; p < names.size() && !film_; ++p) {
         auto& channel = host_->channels.channel(names[p]);
@@ -377,7 +397,7 @@ bool RenderSession::march(March kind, int rays, bool lit, const RenderControl& c
         for_pixels(scene_.width, scene_.height, [&](std::uint32_t i, std::size_t at) { channel[at] = plane[i]; });
     }
     if (kind == March::features)
-        marched_ = names, rays_ = rays;
+        marched_ = names, rays_ = rays, draft_ = lit && workers_[dealer_.left().front()]->sky->is_draft();
     else
         samples_ = resolved_ = rays, traced_ = false;
     return true;

@@ -30,6 +30,7 @@ struct RenderProgress {
 
 struct RenderControl {
     bool light = true;                                   ///< features have light.* channels (the others' bits do not depend on it)
+    bool draft = false;                                  ///< sky light that must be found anew may be coarse: for a picture in motion
     double seconds = 0;                                  ///< stop adding passes when they would end later than this; 0: no limit
     const std::atomic<bool>* cancelled = nullptr;        ///< set by Ctrl-C: the passes finished so far are the result
     std::function<void(const RenderProgress&)> progress; ///< called from the calling thread or a worker, now and then
@@ -90,6 +91,7 @@ public:
     std::vector<Device> devices() const;
 
 private:
+    struct Marching;
     struct Worker;
     struct HostSums;
     Dealer dealer_;
@@ -112,6 +114,7 @@ private:
     bool traced_ = false;                  // the samples are paths, not a march's rays
     std::vector<std::string> marched_;     // features that are there
     int rays_ = 0;                         // a pixel, of the features
+    bool draft_ = false;                   // the features' sky light is a draft
     std::unique_ptr<Film> film_;           // where the picture is kept on the device,
     std::optional<PixelSums> sums_, next_; // with the sums of whole passes, and of the pass that runs
     std::unique_ptr<HostSums> host_;       // else where it is kept on the host
@@ -120,7 +123,7 @@ private:
     bool behind_set_ = false;
 
     void prepare_view();
-    void prepare_light();
+    void prepare_light(bool draft);
     void prepare_picture();
     void compare_devices();
     bool trace_pass(int samples, int wanted, const RenderControl& control);

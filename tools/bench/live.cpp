@@ -56,7 +56,9 @@ std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, 
         session.picture(scene.background, {scene.tonemap, scene.exposure}, true);
     };
     const auto moved = [&] {
+        control.draft = true;
         session.march_features(1, control);
+        control.draft = false;
         session.accumulate(1, control);
         finish();
     };
