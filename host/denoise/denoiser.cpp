@@ -2,7 +2,7 @@
 #include "host/denoise/neural_grid.hpp"
 #include "host/denoise/tunables.hpp"
 #include "runtime/error.hpp"
-#include "runtime/schedule/dealer.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include <algorithm>
 #include <cmath>
