@@ -12,7 +12,7 @@ std::vector<shared::KeyLight> key_lights(const shared::RenderParams& params, con
 /// depends on the volume, its classification and the environment, not on the camera.
 class SkyLight {
 public:
-    /// Marches from the corners near anything visible. Throws Error{memory}.
+    /// Marches from the corners near anything visible. Throws Error{device_memory}.
     SkyLight(Device& device, const DeviceVolume& volume, const SkySplit& sky);
     const shared::SkyGrid& grid() const { return grid_; }
     const Buffer& light() const { return light_; } ///< [corners * CLVR_SKY_TERMS] float4, x fastest

@@ -25,13 +25,14 @@ std::vector<Double3> outline_of(const Classified& c, const Scene& scene) {
                            clip_box_index(scene, *c.voxels));
 }
 
-/// Throws Error{memory} when the picture's own buffers would not fit into what the host has left: the kernel would end the process instead.
+/// Throws Error{host_memory} when the picture's own buffers would not fit into what the host has left: the kernel would end the process
+/// instead.
 void refuse_what_host_memory_cannot_hold(int width, int height) {
     const double wanted =
         static_cast<double>(width) * height * (64 + 4 * 4 + 3 * 4 + 2 * 4 * march_planes(March::features)); // sums twice, channels, planes
     const std::size_t left = available_memory();
     if (wanted > static_cast<double>(left))
-        throw Error(ErrorKind::memory,
+        throw Error(ErrorKind::host_memory,
                     "a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels takes " +
                         size_text(static_cast<std::size_t>(wanted)) + " of host memory, " + size_text(left) +
                         " are left; try a smaller one",

@@ -169,7 +169,7 @@ void copy(Device& device, const Buffer& from, Buffer& to, std::size_t bytes, std
              [&] { device.queue().enqueueCopyBuffer(from.handle(), to.handle(), from_offset, to_offset, bytes); });
 }
 
-bool is_device_failure(const Error& error) { return error.kind() == ErrorKind::device || error.kind() == ErrorKind::memory; }
+bool is_device_failure(const Error& error) { return error.kind() == ErrorKind::device || error.kind() == ErrorKind::device_memory; }
 
 void Scheduler::Speed::add(double measured) {
     // The first chunk pays for what drivers do at a kernel's first launch.

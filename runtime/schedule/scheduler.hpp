@@ -20,7 +20,8 @@ bool is_same(Device a, Device b);
 /// Enqueues on `device` a copy between buffers of its context, [bytes]; another device of it must have finished with them.
 void copy(Device& device, const Buffer& from, Buffer& to, std::size_t bytes, std::size_t from_offset, std::size_t to_offset);
 
-/// Whether an error says that a device (or its memory) failed, so that another one may do the work: kinds device and memory.
+/// Whether an error says that a device (or its memory) failed, so that another one may do the work: kinds device and device_memory. Never
+/// the host's memory, which all devices share: that ends the command.
 bool is_device_failure(const Error& error);
 
 /// Which devices are left, and how fast each was. Devices are named by their position in the list given.

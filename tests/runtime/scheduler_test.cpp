@@ -101,12 +101,12 @@ TEST(Scheduler, AnotherDoesTheChunkOfOneThatFails) {
 TEST(Scheduler, FailsWithTheLastOne) {
     const Warnings warnings;
     Scheduler scheduler(three);
-    const auto fail = [&](std::size_t, std::uint32_t, std::uint32_t) { throw Error(ErrorKind::memory, "is full"); };
+    const auto fail = [&](std::size_t, std::uint32_t, std::uint32_t) { throw Error(ErrorKind::device_memory, "is full"); };
     try {
         scheduler.run("work", 1000, 1, {3, {8, 32}}, fail);
         FAIL();
     } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::memory);
+        EXPECT_EQ(e.kind(), ErrorKind::device_memory);
     }
     EXPECT_THROW(scheduler.left(), Error);
     EXPECT_THROW(scheduler.run("work", 10, 1, {3, {8, 32}}, fail), Error);
@@ -120,6 +120,14 @@ TEST(Scheduler, OtherExceptionsEndTheWorkAndDropNobody) {
     EXPECT_THROW(
         scheduler.run("work", 1000, 1, {3, {8, 32}}, [](std::size_t, std::uint32_t, std::uint32_t) { throw std::runtime_error("wrong"); }),
         std::runtime_error);
+    const auto full = [](std::size_t, std::uint32_t, std::uint32_t) { throw Error(ErrorKind::host_memory, "this machine is full"); };
+    EXPECT_THROW(scheduler.run("work", 1000, 1, {3, {8, 32}}, full), Error);
+    const auto starved = [](std::size_t, std::uint32_t, std::uint32_t) { throw std::bad_alloc(); };
+    EXPECT_THROW(scheduler.run("work", 1000, 1, {3, {8, 32}}, starved), std::bad_alloc);
+    EXPECT_THROW(scheduler.each([](std::size_t device) {
+        if (device == 1) throw Error(ErrorKind::host_memory, "this machine is full");
+    }),
+                 Error);
     EXPECT_EQ(scheduler.left().size(), 3u);
 }
 
@@ -128,7 +136,7 @@ TEST(Scheduler, EachLeavesOutThoseThatFail) {
     Scheduler scheduler(three);
     std::vector<std::size_t> done;
     scheduler.each([&](std::size_t device) {
-        if (device == 0) throw Error(ErrorKind::memory, "is full");
+        if (device == 0) throw Error(ErrorKind::device_memory, "is full");
         done.push_back(device);
     });
     EXPECT_EQ(done, (std::vector<std::size_t>{1, 2}));
@@ -140,10 +148,10 @@ TEST(Scheduler, WhatNoDeviceCanDoIsNoDevicesFailure) {
     const Warnings warnings;
     Scheduler scheduler(three);
     try {
-        scheduler.each([](std::size_t) { throw Error(ErrorKind::memory, "the volume is too large"); });
+        scheduler.each([](std::size_t) { throw Error(ErrorKind::device_memory, "the volume is too large"); });
         FAIL();
     } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::memory);
+        EXPECT_EQ(e.kind(), ErrorKind::device_memory);
     }
     EXPECT_EQ(warnings.text(), "");
 }

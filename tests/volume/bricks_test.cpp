@@ -146,7 +146,7 @@ TEST(Bricks, ThatDoNotFitAreAMemoryError) {
             brick_layout(v, grid, std::vector<float>(grid.count(), 1), 4, limit);
             ADD_FAILURE() << "no error at " << limit;
         } catch (const Error& e) {
-            EXPECT_EQ(e.kind(), ErrorKind::memory);
+            EXPECT_EQ(e.kind(), ErrorKind::device_memory);
             EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
         }
 }
