@@ -29,7 +29,7 @@ bool ended = false; // in the usual way
                                           ", most likely by the OpenCL driver; update it or choose another --device"
                                     : cache);
     remove_temporaries();
-    ::_exit(static_cast<int>(cache.empty() ? ErrorKind::device : ErrorKind::input));
+    ::_exit(exit_code(cache.empty() ? ErrorKind::device : ErrorKind::input));
 }
 
 void at_exit() {
@@ -51,6 +51,7 @@ int run_program(const std::string& name, int (*body)(int argc, char** argv), int
     program = name;
     process = ::getpid();
     prepare_standard_streams();
+    quirks::pocl_hides_devices_without_writable_cache(); // sets a variable: watch_signals starts the first thread
     watch_signals(name);
     std::atexit(at_exit);
     struct sigaction action {};
