@@ -97,7 +97,7 @@ private:
     double cost_;
     const std::vector<Scheduler::ChunkSize>& chunk_sizes_;
     std::vector<Scheduler::Speed>& speeds_;
-    std::vector<Hand> workers_;
+    std::vector<Worker> workers_;
     std::exception_ptr failure_;
 
     std::size_t busy() const {
