@@ -11,7 +11,7 @@
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/render/scene.hpp"
-#include "runtime/schedule/dealer.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include <array>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "host/cli/device_options.hpp"
 #include "runtime/choose/select.hpp"
-#include "runtime/schedule/dealer.hpp"
+#include "runtime/schedule/scheduler.hpp"
 #include "runtime/system/size.hpp"
 #include "runtime/trust/trust.hpp"
 

@@ -80,7 +80,7 @@ MemoryPlan plan_for(const Device& device, const Voxels& v, const MajorantGrid& g
         plan.layout = device_layout(device, whole);
         if (plan.layout->stored_bytes() > plan.free_bytes) plan.problem = fmt::format("{} are free", size_text(plan.free_bytes));
     } catch (const Error& e) {
-        if (e.kind() != ErrorKind::memory) throw;
+        if (e.kind() != ErrorKind::device_memory) throw;
         plan.problem = e.line();
     }
     return plan;

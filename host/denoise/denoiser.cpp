@@ -3,7 +3,7 @@
 #include "host/denoise/picture_light.hpp"
 #include "host/denoise/tunables.hpp"
 #include "runtime/error.hpp"
-#include "runtime/schedule/dealer.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include <algorithm>
 #include <cmath>

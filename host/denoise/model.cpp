@@ -1,4 +1,5 @@
 #include "host/denoise/model.hpp"
+#include "host/frame/names.hpp"
 #include "kernels/shared/denoise_params.h"
 #include "runtime/error.hpp"
 #include "runtime/system/split_mix.hpp"
@@ -14,11 +15,17 @@ namespace clvr {
 
 namespace {
 
+std::vector<std::string> joined(std::initializer_list<channel::Names> groups, std::initializer_list<const char*> single) {
+    std::vector<std::string> names;
+    for (const channel::Names& group : groups) names.insert(names.end(), group.begin(), group.end());
+    names.insert(names.end(), single.begin(), single.end());
+    return names;
+}
+
 const std::vector<std::string>& known_channels() {
-    static const std::vector<std::string> names{"R",          "G",         "B",        "A",          "albedo.R",   "albedo.G",
-                                                "albedo.B",   "normal.X",  "normal.Y", "normal.Z",   "depth.Z",    "depth.deviation",
-                                                "depth.half", "opacity.A", "noise",    "variance.R", "variance.G", "variance.B",
-                                                "known.R",    "known.G",   "known.B"};
+    using namespace channel;
+    static const std::vector<std::string> names = joined({colour, albedo, normal, variance, {"known.R", "known.G", "known.B"}},
+                                                         {alpha, depth, depth_deviation, depth_half, opacity, "noise"});
     return names;
 }
 
@@ -35,14 +42,12 @@ void check_range(const char* name, int value, int low, int high) {
 
 } // namespace
 
-std::vector<std::string> reference_channels() {
-    return {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"};
-}
+std::vector<std::string> reference_channels() { return joined({channel::colour, channel::albedo, channel::normal}, {channel::depth}); }
 
 Model default_settings() {
     Model m;
     m.channels = reference_channels();
-    m.channels.insert(m.channels.end(), {"opacity.A", "depth.deviation", "depth.half", "noise"});
+    m.channels.insert(m.channels.end(), {channel::opacity, channel::depth_deviation, channel::depth_half, "noise"});
     m.exposure = true;
     m.albedo_floor = 1.0f / 32;
     m.opacity_weight = true;

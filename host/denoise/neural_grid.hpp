@@ -50,7 +50,7 @@ private:
 
 class NeuralGrid {
 public:
-    /// Allocates the batch's buffers. Throws Error{memory}.
+    /// Allocates the batch's buffers. Throws Error{device_memory}.
     NeuralGrid(const Device& device, const Model& model, const BatchShape& shape);
 
     /// Takes the parameters (order of Model::flat).

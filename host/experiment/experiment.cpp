@@ -114,7 +114,7 @@ private:
         std::vector<std::string> names;
         for (const Device& d : devices_)
             names.push_back(fmt::format("{} ({} {})", d.facts().name, d.facts().platform, d.facts().driver_version));
-        ordered_json results{{"clvr.format", "results/1"},
+        ordered_json results{{format_key, "results/1"},
                              {"scene", s_.name},
                              {"scale", s_.scale},
                              {"device", fmt::format("{}", fmt::join(names, " + "))},

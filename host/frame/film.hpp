@@ -31,7 +31,7 @@ public:
         return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
     }
     /// Number of the first of the planes `names`, which lie next to each other in this order; makes them (what they hold is undefined)
-    /// behind the others where none is there. Throws Error{memory}; Error{internal} when they lie otherwise.
+    /// behind the others where none is there. Throws Error{device_memory}; Error{internal} when they lie otherwise.
     int require(const std::vector<std::string>& names);
     /// [planes][height * width]
     Buffer& planes() { return planes_; }

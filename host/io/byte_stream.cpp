@@ -36,7 +36,8 @@ struct ByteStream::Inflater {
     bool ended = false;
 
     Inflater() {
-        if (inflateInit2(&z, 15 + 32) != Z_OK) throw Error(ErrorKind::memory, "zlib cannot start"); // 15 + 32: gzip or zlib, by its header
+        if (inflateInit2(&z, 15 + 32) != Z_OK)
+            throw Error(ErrorKind::host_memory, "zlib cannot start"); // 15 + 32: gzip or zlib, by its header
     }
     ~Inflater() { inflateEnd(&z); }
 };

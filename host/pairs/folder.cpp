@@ -2,6 +2,7 @@
 #include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -24,7 +25,8 @@ PairsFolder read_pairs(const std::string& folder) {
     try {
         const nlohmann::json plan = nlohmann::json::parse(read_text(path));
         will_read(path);
-        if (plan.at("clvr.format") != "pairs/1") throw Error(ErrorKind::input, "is of another format; expected pairs/1", path);
+        if (plan.at(format_key) != pairs_format)
+            throw Error(ErrorKind::input, fmt::format("is of another format; expected {}", pairs_format), path);
         pairs.split = plan.at("split").get<std::string>();
         views = static_cast<int>(plan.at("views").size());
         frames = plan.at("noisy_frames").get<int>();

@@ -17,6 +17,9 @@ struct PairsFolder {
     std::vector<PairView> views;
 };
 
+/// The format tag of pairs.json.
+inline constexpr const char* pairs_format = "pairs/1";
+
 /// Names of a folder's frames.
 std::string noisy_name(int view, int frame);
 bool is_frame_name(const std::string& name); ///< one of these

@@ -1,8 +1,10 @@
 #include "host/pairs/plan.hpp"
 #include "host/io/scene/scene_file.hpp"
 #include "host/io/volume/volume_file.hpp"
+#include "host/pairs/folder.hpp"
 #include "host/render/params.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,7 +17,7 @@ std::string to_json(const PairsPlan& p) {
     ordered_json views = ordered_json::array(), scenes = ordered_json::array();
     for (const auto& v : p.views) views.push_back({{"azimuth", v.azimuth}, {"elevation", v.elevation}, {"zoom", v.zoom}});
     for (const auto& s : p.scenes) scenes.push_back(ordered_json::parse(to_json(s)));
-    const ordered_json all{{"clvr.format", "pairs/1"},       {"split", p.split}, {"spp", p.spp},   {"reference_spp", p.reference_spp},
+    const ordered_json all{{format_key, pairs_format},       {"split", p.split}, {"spp", p.spp},   {"reference_spp", p.reference_spp},
                            {"noisy_frames", p.noisy_frames}, {"seed", p.seed},   {"views", views}, {"scenes", scenes}};
     return all.dump(1) + "\n";
 }
@@ -23,7 +25,8 @@ std::string to_json(const PairsPlan& p) {
 PairsPlan parse_pairs_plan(const std::string& text, const std::string& where) {
     try {
         const auto j = nlohmann::json::parse(text);
-        if (j.at("clvr.format") != "pairs/1") throw Error(ErrorKind::input, "is of another format; expected pairs/1", where);
+        if (j.at(format_key) != pairs_format)
+            throw Error(ErrorKind::input, fmt::format("is of another format; expected {}", pairs_format), where);
         PairsPlan p{j.at("split").get<std::string>(),
                     j.at("spp").get<std::vector<int>>(),
                     j.at("reference_spp").get<int>(),

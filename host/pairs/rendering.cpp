@@ -22,10 +22,10 @@ std::optional<Frame> frame_of(RenderSession& session, const Scene& scene, const 
     control.cancelled = &interrupted;
     try {
         Frame frame = render(session, scene, control);
-        if (std::stoi(frame.attributes.at("clvr.spp")) < scene.spp) return std::nullopt;
-        frame.attributes["clvr.scene"] = provenance_json(scene);
-        frame.attributes["clvr.seed"] = std::to_string(scene.seed);
-        frame.attributes["clvr.volume.sha256"] = scene.volume_sha256;
+        if (std::stoi(frame.attributes.at(attribute::spp)) < scene.spp) return std::nullopt;
+        frame.attributes[attribute::scene] = provenance_json(scene);
+        frame.attributes[attribute::seed] = std::to_string(scene.seed);
+        frame.attributes[attribute::volume_sha256] = scene.volume_sha256;
         return frame;
     } catch (const Error& e) {
         if (e.kind() == ErrorKind::interrupted) return std::nullopt;

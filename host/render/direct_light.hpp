@@ -13,7 +13,7 @@ std::vector<shared::KeyLight> key_lights(const shared::RenderParams& params, con
 class SkyLight {
 public:
     /// Marches from the corners near anything visible. A `draft` has at most 2^12 corners and takes a tenth of the time. Throws
-    /// Error{memory}.
+    /// Error{device_memory}.
     SkyLight(Device& device, const DeviceVolume& volume, const SkySplit& sky, bool draft = false);
     bool is_draft() const { return draft_; }
     const shared::SkyGrid& grid() const { return grid_; }

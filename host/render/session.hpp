@@ -11,7 +11,7 @@
 #include "host/render/path_tracer.hpp"
 #include "host/render/scene.hpp"
 #include "runtime/opencl/device.hpp"
-#include "runtime/schedule/dealer.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include <atomic>
 #include <functional>
@@ -94,7 +94,7 @@ private:
     struct Marching;
     struct Worker;
     struct HostSums;
-    Dealer dealer_;
+    Scheduler scheduler_;
     std::vector<std::unique_ptr<Worker>> workers_; // by device
     std::mutex progress_;
     const PreparedVolume* volume_ = nullptr;
@@ -128,7 +128,7 @@ private:
     void compare_devices();
     bool trace_pass(int samples, int wanted, const RenderControl& control);
     bool march(March kind, int rays, bool lit, const RenderControl& control);
-    std::vector<Dealer::Portion> march_portions() const;
+    std::vector<Scheduler::ChunkSize> march_chunk_sizes() const;
     void resolve();
     void see_environment(Worker& w, std::uint32_t first, std::uint32_t count, Buffer& out);
 };

@@ -6,7 +6,7 @@
 #include "host/pairs/folder.hpp"
 #include "host/train/checkpoint.hpp"
 #include "runtime/error.hpp"
-#include "runtime/schedule/dealer.hpp"
+#include "runtime/schedule/scheduler.hpp"
 #include "runtime/system/atomic_file.hpp"
 
 #include <algorithm>

@@ -123,7 +123,7 @@ BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::v
     const std::size_t capacity = std::min(max_pool_bytes / bytes, std::size_t{1} << 31);
     const auto too_big = [&] {
         return Error(
-            ErrorKind::memory,
+            ErrorKind::device_memory,
             fmt::format("the visible part of the volume takes {:.1f} MiB on the device, more than 8 buffers of at most {:.1f} MiB; try a "
                         "transfer function that shows less, a larger --memory, or another --device",
                         total * bytes / 1048576.0, capacity * bytes / 1048576.0));

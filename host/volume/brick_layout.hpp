@@ -39,8 +39,8 @@ int brick_log2_edge(const Int3& dims);
 /// voxel away, can read. One more voxel all around keeps a position safe that rounding puts on the far side of a cell's border.
 std::vector<char> needed_bricks(const MajorantGrid& grid, const std::vector<float>& cell_majorants, const BrickLayout& layout);
 
-/// Lays out the needed_bricks. `log2_edge` is 3 to 8. Pools are at most `max_pool_bytes` each. Throws Error{memory} when 8 pools do not
-/// hold it.
+/// Lays out the needed_bricks. `log2_edge` is 3 to 8. Pools are at most `max_pool_bytes` each. Throws Error{device_memory} when 8 pools do
+/// not hold it.
 BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::vector<float>& cell_majorants, int log2_edge,
                          std::size_t max_pool_bytes);
 

@@ -90,6 +90,7 @@ std::optional<std::vector<DevicePart>> recall(const std::vector<RememberedDevice
             return d.platform == wanted.platform && d.name == wanted.name && occurrence-- == 0;
         });
         if (found == devices.end()) return std::nullopt;
+        if (wanted.sub_devices == 1 || static_cast<unsigned>(wanted.sub_devices) > found->max_sub_devices) return std::nullopt;
         parts.push_back({static_cast<std::size_t>(found - devices.begin()), wanted.sub_devices});
     }
     return parts;

@@ -29,7 +29,7 @@ void save_remembered(const std::vector<RememberedDevice>& devices, const Remembe
 /// How to remember these parts of the list.
 std::vector<RememberedDevice> remember(const std::vector<DevicePart>& parts, const std::vector<DeviceFacts>& devices);
 
-/// The remembered devices in this list; nothing when one of them is gone.
+/// The remembered devices in this list; nothing when one of them is gone, or cannot be divided so.
 std::optional<std::vector<DevicePart>> recall(const std::vector<RememberedDevice>& remembered, const std::vector<DeviceFacts>& devices);
 
 } // namespace clvr

@@ -82,7 +82,7 @@ Error translated(const cl::Error& error, const std::string& where) {
                         status == CL_INVALID_BUFFER_SIZE;
     std::string text = fmt::format("{} failed with {} ({})", error.what(), status_name(status), status);
     if (memory) text += "; try a lower --memory, a smaller picture or another --device";
-    return Error(memory ? ErrorKind::memory : ErrorKind::device, text, where);
+    return Error(memory ? ErrorKind::device_memory : ErrorKind::device, text, where);
 }
 
 } // namespace clvr

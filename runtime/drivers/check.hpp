@@ -11,8 +11,8 @@ namespace clvr {
 /// "CL_OUT_OF_RESOURCES" for -5; "status -9999" for a number that no header names.
 std::string status_name(cl_int status);
 
-/// The Error that stands for a failed OpenCL call: names the call and the status. Out of memory or of resources is ErrorKind::memory, the
-/// rest ErrorKind::device. `where` says what was attempted and on which device.
+/// The Error that stands for a failed OpenCL call: names the call and the status. Out of memory or of resources is
+/// ErrorKind::device_memory, the rest ErrorKind::device. `where` says what was attempted and on which device.
 Error translated(const cl::Error& error, const std::string& where);
 
 /// Runs `call`, which may use the C++ bindings; a cl::Error leaves it as clvr::Error.

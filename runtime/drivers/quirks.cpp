@@ -41,21 +41,17 @@ std::string why_no_room(const fs::path& folder, off_t bytes) {
 
 } // namespace
 
-void pocl_hides_devices_without_writable_cache() {
+bool pocl_hides_devices_without_writable_cache() {
     const fs::path usual = pocl_cache();
-    if (!usual.empty() && writable_folder(usual)) return;
+    if (!usual.empty() && writable_folder(usual)) return true;
     std::error_code failed;
     const std::string temporary = fs::temp_directory_path(failed).string();
     remove_stale_folders(temporary, "pocl");
     private_cache = Temporary::folder_in(temporary, "pocl");
-    if (private_cache.path().empty()) {
-        spdlog::warn("no folder for compiled kernels can be written ({} and the temporary folder); PoCL will show no device",
-                     usual.string());
-        return;
-    }
+    if (private_cache.path().empty()) return false;
     setenv("POCL_CACHE_DIR", private_cache.path().c_str(), 1);
     std::atexit([] { private_cache = Temporary(); });
-    spdlog::debug("PoCL cannot write {}; it keeps its kernels in a temporary folder", usual.empty() ? "(no HOME)" : usual.string());
+    return true;
 }
 
 std::string pocl_cache_problem() {

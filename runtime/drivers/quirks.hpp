@@ -9,9 +9,10 @@
 namespace clvr::quirks {
 
 /// PoCL 3.1 lists its platform with 0 devices when it cannot write its kernel cache (POCL_CACHE_DIR, XDG_CACHE_HOME, HOME).
-/// Points POCL_CACHE_DIR to a private temporary folder, removed at exit, when the usual one is not writable. Must run before the first
-/// OpenCL call. https://github.com/pocl/pocl/issues/325
-void pocl_hides_devices_without_writable_cache();
+/// Points POCL_CACHE_DIR to a private temporary folder, removed at exit, when the usual one is not writable. Returns whether there is a
+/// writable one now. Must run before the first OpenCL call, and before there are threads, as it sets a variable: run_program calls it.
+/// https://github.com/pocl/pocl/issues/325
+bool pocl_hides_devices_without_writable_cache();
 
 /// PoCL 3.1 cannot build without room in its kernel cache: LLVM says "IO failure" and calls exit(1), or the build fails. One line that
 /// names the folder and why it takes no more (a full disk, a quota, ulimit -f); empty where there is room.

@@ -139,13 +139,13 @@ Buffer Device::buffer(std::size_t bytes, std::string_view label) {
     bytes = std::max<std::size_t>(bytes, 1);
     const std::string where = fmt::format("{} on {}", label, state_->facts.name);
     if (bytes > max_alloc_bytes())
-        throw Error(ErrorKind::memory,
+        throw Error(ErrorKind::device_memory,
                     fmt::format("wants {} in one buffer, the device takes at most {}; try a smaller picture or another --device",
                                 size_text(bytes), size_text(max_alloc_bytes())),
                     where);
     const std::shared_ptr<Account> account = state_->account;
     if (!account->take(bytes, state_->max_memory_bytes))
-        throw Error(ErrorKind::memory,
+        throw Error(ErrorKind::device_memory,
                     fmt::format("wants {}, of {} only {} are left; try a higher --memory, a smaller picture or another --device",
                                 size_text(bytes), size_text(state_->max_memory_bytes), size_text(free_bytes())),
                     where);

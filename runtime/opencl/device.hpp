@@ -108,8 +108,8 @@ public:
     std::size_t peak_bytes() const;
     void set_memory_limit(std::size_t bytes);
 
-    /// Allocates device memory (at least 1 byte). `label` names it in the error. Throws Error{memory} before the driver is asked when it
-    /// cannot fit.
+    /// Allocates device memory (at least 1 byte). `label` names it in the error. Throws Error{device_memory} before the driver is asked
+    /// when it cannot fit.
     Buffer buffer(std::size_t bytes, std::string_view label);
 
     /// Blocking transfers, bounds-checked; offsets and sizes in bytes.

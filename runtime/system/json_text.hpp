@@ -6,6 +6,9 @@
 
 namespace clvr {
 
+/// The member of every JSON that clvr reads again: its kind and version, such as "pairs/1".
+inline constexpr const char* format_key = "clvr.format";
+
 namespace detail {
 
 template <class Json>

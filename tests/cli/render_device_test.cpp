@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 namespace clvr {
@@ -316,6 +318,19 @@ TEST_F(Render, RefusesWithOneLineAndWritesNothing) {
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << command << "\n" << o.err;
         EXPECT_FALSE(exists("x.png")) << command;
     }
+}
+
+TEST_F(Render, MemoryOfTheMachineIsNoDevicesFailure) {
+    if (run_ball({"-o", "one.exr", "--device", "cpu/2"}).exit_code != 0) GTEST_SKIP() << "no CPU of two parts";
+    const char* name = "huge_10000x10000x10000_uint8.raw"; // sparse: a terabyte that takes no room
+    std::ofstream(folder.path() / name).close();
+    std::error_code failed;
+    std::filesystem::resize_file(folder.path() / name, 1000000000000u, failed);
+    if (failed) GTEST_SKIP() << "no file of a terabyte here: " << failed.message();
+    const Outcome o = run({name, "-o", "x.png", "--device", "cpu/2"});
+    EXPECT_EQ(o.exit_code, 5) << o.err;
+    EXPECT_THAT(o.err, testing::AllOf(HasSubstr(name), HasSubstr("of memory"), testing::Not(HasSubstr("left out"))));
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
 }
 
 TEST_F(Render, GoesOnWithoutADeviceThatFails) {

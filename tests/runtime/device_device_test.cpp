@@ -119,16 +119,16 @@ TEST(Device, RefusesBeforeAllocating) {
     EXPECT_EQ(device.max_alloc_bytes(), 1u << 20);
     EXPECT_EQ(device.free_bytes(), 2u << 20);
     const Error large = error_of([&] { device.buffer((1 << 20) + 1, "frames"); });
-    EXPECT_EQ(large.kind(), ErrorKind::memory);
+    EXPECT_EQ(large.kind(), ErrorKind::device_memory);
     EXPECT_THAT(large.line(), testing::AllOf(testing::StartsWith("frames on "), testing::HasSubstr("1.0 MiB")));
     const Buffer a = device.buffer(1 << 20, "a"), b = device.buffer(900 << 10, "b");
     const Error full = error_of([&] { device.buffer(200 << 10, "c"); });
-    EXPECT_EQ(full.kind(), ErrorKind::memory);
+    EXPECT_EQ(full.kind(), ErrorKind::device_memory);
     EXPECT_THAT(full.what(), testing::AllOf(testing::HasSubstr("200 KiB"), testing::HasSubstr("2.0 MiB"), testing::HasSubstr("124 KiB")));
     EXPECT_EQ(device.used_bytes(), a.bytes() + b.bytes());
     device.set_memory_limit(1 << 20);
     EXPECT_EQ(device.free_bytes(), 0u);
-    EXPECT_EQ(error_of([&] { device.buffer(1, "d"); }).kind(), ErrorKind::memory);
+    EXPECT_EQ(error_of([&] { device.buffer(1, "d"); }).kind(), ErrorKind::device_memory);
 }
 
 TEST(Device, WithoutACompilerIsRefusedByName) {

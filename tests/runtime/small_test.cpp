@@ -77,7 +77,7 @@ TEST(Check, NamesTheCallAndTheStatus) {
 
 TEST(Check, LackOfMemoryIsItsOwnKind) {
     for (const cl_int status : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES, CL_OUT_OF_HOST_MEMORY, CL_INVALID_BUFFER_SIZE})
-        EXPECT_EQ(translated(cl::Error(status, "clCreateBuffer"), "x").kind(), ErrorKind::memory);
+        EXPECT_EQ(translated(cl::Error(status, "clCreateBuffer"), "x").kind(), ErrorKind::device_memory);
 }
 
 TEST(Check, TranslatesOnlyOpenClErrors) {

@@ -233,14 +233,14 @@ Verdict verdict_from(const std::string& answer) {
 
 int serve() {
     const int answers = dup(STDOUT_FILENO); // drivers print to stdout what they like
-    if (answers < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return static_cast<int>(ErrorKind::internal);
+    if (answers < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return exit_code(ErrorKind::internal);
     for (std::string line; std::getline(std::cin, line);) {
         const json request = json::parse(line);
         const json answer = request.at("do") == "measure" ? measure_stage(request) : compare_candidate(request);
         const std::string text = answer.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
         for (std::size_t sent = 0; sent < text.size();) {
             const ssize_t n = write(answers, text.data() + sent, text.size() - sent);
-            if (n <= 0) return static_cast<int>(ErrorKind::internal);
+            if (n <= 0) return exit_code(ErrorKind::internal);
             sent += static_cast<std::size_t>(n);
         }
     }

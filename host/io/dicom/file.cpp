@@ -210,7 +210,7 @@ private:
         if (inflated_.empty()) damaged("its deflated data set is empty");
         size_ = inflated_.size();
         stream_.reset(fmemopen(inflated_.data(), inflated_.size(), "rb"));
-        if (!stream_) throw Error(ErrorKind::memory, "not enough memory for its data set", path_);
+        if (!stream_) throw Error(ErrorKind::host_memory, "not enough memory for its data set", path_);
         at_ = 0;
     }
 

@@ -249,7 +249,7 @@ Frame read_exr(const std::string& path) {
     } catch (const Error& e) {
         throw Error(e.kind(), e.what(), path);
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::memory, "its pixels do not fit into the memory of this machine", path);
+        throw Error(ErrorKind::host_memory, "its pixels do not fit into the memory of this machine", path);
     } catch (const std::exception& e) {
         std::string why = e.what();
         std::replace(why.begin(), why.end(), '\n', ' ');

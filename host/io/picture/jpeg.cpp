@@ -17,7 +17,7 @@ constexpr std::size_t largest_jpeg_pixels = std::size_t{1} << 28;
 using Handle = std::unique_ptr<void, int (*)(tjhandle)>;
 
 Handle checked(tjhandle handle) {
-    if (!handle) throw Error(ErrorKind::memory, "there is no memory for libjpeg-turbo");
+    if (!handle) throw Error(ErrorKind::host_memory, "there is no memory for libjpeg-turbo");
     return {handle, tjDestroy};
 }
 

@@ -204,7 +204,8 @@ void check_geometry(const Geometry& g, const std::string& path) {
 void allocate_bytes(std::vector<unsigned char>& to, std::uint64_t bytes, const std::string& path) {
     const std::uint64_t machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
     if (bytes > machine)
-        throw Error(ErrorKind::memory, fmt::format("its voxels need {} bytes, this machine has {} bytes of memory", bytes, machine), path);
+        throw Error(ErrorKind::host_memory, fmt::format("its voxels need {} bytes, this machine has {} bytes of memory", bytes, machine),
+                    path);
     to.resize(static_cast<std::size_t>(bytes));
 }
 

@@ -173,7 +173,7 @@ Voxels read_volume(const std::string& path, const VolumeReadOptions& options) {
     } catch (const fs::filesystem_error& e) {
         throw Error(ErrorKind::input, fmt::format("cannot be read: {}", e.code().message()), path);
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::memory, "not enough memory for this volume", path);
+        throw Error(ErrorKind::host_memory, "not enough memory for this volume", path);
     }
 }
 

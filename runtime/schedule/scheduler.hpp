@@ -1,4 +1,4 @@
-// Work dealt to several devices at once, by their measured speed. A device that fails is left out, its work done by the others.
+// Work shared by several devices at once, by their measured speed. A device that fails is left out, its work done by the others.
 #pragma once
 #include "runtime/error.hpp"
 #include "runtime/opencl/device.hpp"
@@ -20,32 +20,34 @@ bool is_same(Device a, Device b);
 /// Enqueues on `device` a copy between buffers of its context, [bytes]; another device of it must have finished with them.
 void copy(Device& device, const Buffer& from, Buffer& to, std::size_t bytes, std::size_t from_offset, std::size_t to_offset);
 
-/// Whether an error says that a device (or its memory) failed, so that another one may do the work: kinds device and memory.
+/// Whether an error says that a device (or its memory) failed, so that another one may do the work: kinds device and device_memory. Never
+/// the host's memory, which all devices share: that ends the command.
 bool is_device_failure(const Error& error);
 
 /// Which devices are left, and how fast each was. Devices are named by their position in the list given.
-class Dealer {
+class Scheduler {
 public:
     /// How many numbers a device takes at once: a multiple of `least`, at most `most`.
-    struct Portion {
+    struct ChunkSize {
         std::uint32_t least = 1, most = 1;
     };
     using Task = std::function<void(std::size_t device)>;
     using Work = std::function<void(std::size_t device, std::uint32_t first, std::uint32_t count)>;
 
-    explicit Dealer(const std::vector<Device>& devices);
+    explicit Scheduler(const std::vector<Device>& devices);
     /// For anything else that works: what to call each in warnings.
-    explicit Dealer(std::vector<std::string> names) : names_(std::move(names)), left_(names_.size(), true) {}
+    explicit Scheduler(std::vector<std::string> names) : names_(std::move(names)), left_(names_.size(), true) {}
 
     /// task(device) for every device that is left, in order, on the calling thread.
     void each(const Task& task);
 
     /// Calls work(device, first, count) on a thread a device until each of the numbers 0 .. total - 1 was done; `work` returns when the
-    /// device is done. A run is half of what would make all devices end together, by the speeds of earlier runs with this `label` (numbers
-    /// times `cost` a second), within the device's portion: so runs get short towards the end, fast devices take more of them, and a
-    /// device leaves the rest to another that will have done all of it sooner. The run of a device that fails is done anew by another one:
-    /// `work` must give the same when it is repeated. Any other exception ends the deal and is thrown on.
-    void deal(const std::string& label, std::uint32_t total, double cost, const std::vector<Portion>& portions, const Work& work);
+    /// device is done. Each call is a chunk of the numbers. Its size is half of what would make all devices end together, by the speeds of
+    /// earlier chunks with this `label` (numbers times `cost` a second), within the device's `chunk_sizes`. So chunks get small towards the
+    /// end, and fast devices take more of them. A device takes none when another will have done all that is left before this one could do
+    /// its chunk. The chunk of a device that fails is done anew by another one: `work` must give the same when it is repeated. Any other
+    /// exception ends the work and is thrown on.
+    void run(const std::string& label, std::uint32_t total, double cost, const std::vector<ChunkSize>& chunk_sizes, const Work& work);
 
     /// Whether devices compute the same: those whose result(device) differs from that of more than half of the devices left are dropped.
     /// Throws Error{device} when there is no such majority, naming the devices. `what` is computed, for the message: "different <what>".
@@ -57,13 +59,13 @@ public:
     /// Positions of the devices that have not failed, in order; at least one. Throws Error{device} when none is left.
     std::vector<std::size_t> left() const;
 
-    /// Numbers times cost a second of a device under a label; 0 before its first run.
+    /// Numbers times cost a second of a device under a label; 0 before its first chunk.
     double speed(const std::string& label, std::size_t device) const;
 
-    /// A device's rate by its latest runs.
+    /// A device's rate by its latest chunks.
     struct Speed {
         double rate = 0;
-        int runs = 0;
+        int chunks = 0;
         void add(double measured);
     };
 
@@ -82,7 +84,7 @@ auto on_first(std::vector<Device>& devices, Task&& task) {
             return task(devices.front());
         } catch (const Error& error) {
             if (!is_device_failure(error) || devices.size() < 2) throw;
-            Dealer(devices).drop(0, error);
+            Scheduler(devices).drop(0, error);
             devices.erase(devices.begin());
         }
     }

@@ -1,4 +1,4 @@
-#include "runtime/schedule/dealer.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include "runtime/drivers/check.hpp"
 
@@ -24,48 +24,48 @@ constexpr std::chrono::milliseconds patience{5};
 
 double seconds_between(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
 
-struct Run {
+struct Chunk {
     std::uint32_t first, count;
 };
 
-/// What is not dealt yet, and who has what.
-class Table {
+/// The numbers that nobody has done yet, and what each device works on.
+class Queue {
 public:
-    Table(std::uint32_t total, double cost, const std::vector<Dealer::Portion>& portions, std::vector<Dealer::Speed>& speeds,
+    Queue(std::uint32_t total, double cost, const std::vector<Scheduler::ChunkSize>& chunk_sizes, std::vector<Scheduler::Speed>& speeds,
           const std::vector<std::size_t>& devices)
-        : total_(total), rest_(total), cost_(cost), portions_(portions), speeds_(speeds), hands_(portions.size()) {
-        if (total > 0) runs_.push_back({0, total});
-        for (const std::size_t d : devices) hands_[d].present = true;
+        : total_(total), rest_(total), cost_(cost), chunk_sizes_(chunk_sizes), speeds_(speeds), workers_(chunk_sizes.size()) {
+        if (total > 0) rest_chunks_.push_back({0, total});
+        for (const std::size_t d : devices) workers_[d].present = true;
     }
 
-    /// The device's next run; waits while others might still give theirs back. Nothing when all is done or the deal has ended.
-    std::optional<Run> take(std::size_t device) {
+    /// The device's next chunk; waits while others might still give theirs back. Nothing when all is done or the work has ended.
+    std::optional<Chunk> take(std::size_t device) {
         std::unique_lock lock(mutex_);
         for (;;) {
             if (failure_ || (rest_ == 0 && busy() == 0)) return std::nullopt;
             if (rest_ > 0) {
-                const std::uint32_t count = portion(device);
+                const std::uint32_t count = chunk_size(device);
                 if (!another_ends_sooner(device, count)) return cut(device, count);
             }
             changed_.wait_for(lock, patience);
         }
     }
 
-    void done(std::size_t device, const Run& run) {
+    void done(std::size_t device, const Chunk& chunk) {
         const std::lock_guard lock(mutex_);
-        Hand& hand = hands_[device];
-        speeds_[device].add(run.count * cost_ / std::max(1e-9, seconds_between(hand.since, Clock::now())));
-        hand.busy = false;
+        Worker& worker = workers_[device];
+        speeds_[device].add(chunk.count * cost_ / std::max(1e-9, seconds_between(worker.since, Clock::now())));
+        worker.busy = false;
         changed_.notify_all();
     }
 
-    /// The device is out of the game; its run goes back. `drop` may throw, which ends the deal.
+    /// The device has failed; its chunk goes back. `drop` may throw, which ends the work.
     template <class Drop>
-    void leave(std::size_t device, const Run& run, Drop&& drop) {
+    void leave(std::size_t device, const Chunk& chunk, Drop&& drop) {
         const std::lock_guard lock(mutex_);
-        hands_[device].busy = hands_[device].present = false;
-        runs_.push_back(run);
-        rest_ += run.count;
+        workers_[device].busy = workers_[device].present = false;
+        rest_chunks_.push_back(chunk);
+        rest_ += chunk.count;
         try {
             drop();
         } catch (...) {
@@ -85,30 +85,30 @@ public:
     }
 
 private:
-    struct Hand {
+    struct Worker {
         bool present = false, busy = false;
         Clock::time_point since;
-        double expected_s = 0; // of its run; 0: unknown
+        double expected_s = 0; // of its chunk; 0: unknown
     };
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::vector<Run> runs_; // not dealt; taken from the front of the last one
+    std::vector<Chunk> rest_chunks_; // that nobody has; taken from the front of the last one
     std::uint32_t total_, rest_;
     double cost_;
-    const std::vector<Dealer::Portion>& portions_;
-    std::vector<Dealer::Speed>& speeds_;
-    std::vector<Hand> hands_;
+    const std::vector<Scheduler::ChunkSize>& chunk_sizes_;
+    std::vector<Scheduler::Speed>& speeds_;
+    std::vector<Worker> workers_;
     std::exception_ptr failure_;
 
     std::size_t busy() const {
-        return static_cast<std::size_t>(std::count_if(hands_.begin(), hands_.end(), [](const Hand& h) { return h.busy; }));
+        return static_cast<std::size_t>(std::count_if(workers_.begin(), workers_.end(), [](const Worker& w) { return w.busy; }));
     }
 
-    std::uint32_t portion(std::size_t device) const {
-        const Dealer::Portion& p = portions_[device];
+    std::uint32_t chunk_size(std::size_t device) const {
+        const Scheduler::ChunkSize& p = chunk_sizes_[device];
         double present = 0, known = 0, sum = 0;
-        for (std::size_t d = 0; d < hands_.size(); ++d)
-            if (hands_[d].present) present += 1, known += speeds_[d].rate > 0, sum += speeds_[d].rate;
+        for (std::size_t d = 0; d < workers_.size(); ++d)
+            if (workers_[d].present) present += 1, known += speeds_[d].rate > 0, sum += speeds_[d].rate;
         double share = 1; // of the rest
         if (present > 1) {
             const double own = speeds_[device].rate;
@@ -116,38 +116,38 @@ private:
         }
         const double wanted = std::min<double>(p.most, share * rest_);
         const std::uint32_t least = std::max(1u, p.least), count = std::max(1u, static_cast<std::uint32_t>(wanted) / least) * least;
-        const std::uint32_t run = runs_.back().count;
-        return count >= run || (run - count < least && run <= p.most) ? run : count; // leaves no crumb
+        const std::uint32_t whole = rest_chunks_.back().count;
+        return count >= whole || (whole - count < least && whole <= p.most) ? whole : count; // leaves no crumb
     }
 
-    /// Whether another device will have done all of the rest before this one has done so many. Of two devices never either says so of the
-    /// other: who would do all of it soonest takes.
+    /// Whether another device will have done all of the rest before this one has done so many. This cannot hold of two devices at once: the
+    /// one that would end soonest takes the rest.
     bool another_ends_sooner(std::size_t device, std::uint32_t count) const {
         if (speeds_[device].rate <= 0) return false;
         const double own_s = count * cost_ / speeds_[device].rate;
         const auto now = Clock::now();
-        for (std::size_t d = 0; d < hands_.size(); ++d) {
-            const Hand& h = hands_[d];
-            if (d == device || !h.present || speeds_[d].rate <= 0) continue;
+        for (std::size_t d = 0; d < workers_.size(); ++d) {
+            const Worker& w = workers_[d];
+            if (d == device || !w.present || speeds_[d].rate <= 0) continue;
             double wait_s = 0;
-            if (h.busy) { // one that is late is taken to need as long again as it is late
-                wait_s = std::abs(h.expected_s - seconds_between(h.since, now));
+            if (w.busy) { // one that is late is taken to need as long again as it is late
+                wait_s = std::abs(w.expected_s - seconds_between(w.since, now));
             }
             if (wait_s + rest_ * cost_ / speeds_[d].rate < own_s) return true;
         }
         return false;
     }
 
-    Run cut(std::size_t device, std::uint32_t count) {
-        Run& from = runs_.back();
-        const Run run{from.first, count};
+    Chunk cut(std::size_t device, std::uint32_t count) {
+        Chunk& from = rest_chunks_.back();
+        const Chunk chunk{from.first, count};
         from.first += count, from.count -= count, rest_ -= count;
-        if (from.count == 0) runs_.pop_back();
+        if (from.count == 0) rest_chunks_.pop_back();
         const double rate = speeds_[device].rate;
-        hands_[device].busy = true;
-        hands_[device].since = Clock::now();
-        hands_[device].expected_s = rate > 0 ? count * cost_ / rate : 0;
-        return run;
+        workers_[device].busy = true;
+        workers_[device].since = Clock::now();
+        workers_[device].expected_s = rate > 0 ? count * cost_ / rate : 0;
+        return chunk;
     }
 };
 
@@ -169,19 +169,19 @@ void copy(Device& device, const Buffer& from, Buffer& to, std::size_t bytes, std
              [&] { device.queue().enqueueCopyBuffer(from.handle(), to.handle(), from_offset, to_offset, bytes); });
 }
 
-bool is_device_failure(const Error& error) { return error.kind() == ErrorKind::device || error.kind() == ErrorKind::memory; }
+bool is_device_failure(const Error& error) { return error.kind() == ErrorKind::device || error.kind() == ErrorKind::device_memory; }
 
-void Dealer::Speed::add(double measured) {
-    // The first run pays for what drivers do at a kernel's first launch.
-    rate = runs < 2 ? measured : 0.5 * (rate + measured);
-    ++runs;
+void Scheduler::Speed::add(double measured) {
+    // The first chunk pays for what drivers do at a kernel's first launch.
+    rate = chunks < 2 ? measured : 0.5 * (rate + measured);
+    ++chunks;
 }
 
-Dealer::Dealer(const std::vector<Device>& devices) : left_(devices.size(), true) {
+Scheduler::Scheduler(const std::vector<Device>& devices) : left_(devices.size(), true) {
     for (const Device& d : devices) names_.push_back(display_name(d.facts()));
 }
 
-std::vector<std::size_t> Dealer::left() const {
+std::vector<std::size_t> Scheduler::left() const {
     std::vector<std::size_t> devices;
     for (std::size_t d = 0; d < left_.size(); ++d)
         if (left_[d]) devices.push_back(d);
@@ -189,19 +189,19 @@ std::vector<std::size_t> Dealer::left() const {
     return devices;
 }
 
-double Dealer::speed(const std::string& label, std::size_t device) const {
+double Scheduler::speed(const std::string& label, std::size_t device) const {
     const auto found = speeds_.find(label);
     return found == speeds_.end() ? 0 : found->second.at(device).rate;
 }
 
-void Dealer::drop(std::size_t device, const Error& error) {
+void Scheduler::drop(std::size_t device, const Error& error) {
     left_[device] = false;
     if (std::find(left_.begin(), left_.end(), true) == left_.end()) throw Error(error);
     spdlog::warn("{} failed and is left out, the other devices do its work: {}", names_[device], first_line(error.line()));
     spdlog::debug("{}", error.line());
 }
 
-void Dealer::each(const Task& task) {
+void Scheduler::each(const Task& task) {
     std::vector<std::pair<std::size_t, Error>> failures;
     const std::vector<std::size_t> devices = left();
     for (const std::size_t device : devices) {
@@ -216,7 +216,7 @@ void Dealer::each(const Task& task) {
     for (const auto& [device, error] : failures) drop(device, error);
 }
 
-void Dealer::compare(const std::string& what, const std::function<std::string(std::size_t)>& result) {
+void Scheduler::compare(const std::string& what, const std::function<std::string(std::size_t)>& result) {
     if (left().size() < 2) return;
     std::map<std::string, std::vector<std::size_t>> who; // by result
     each([&](std::size_t device) { who[result(device)].push_back(device); });
@@ -234,20 +234,21 @@ void Dealer::compare(const std::string& what, const std::function<std::string(st
             if (value != most->first) drop(d, Error(ErrorKind::device, "computes other " + what + " than the other devices", names_[d]));
 }
 
-void Dealer::deal(const std::string& label, std::uint32_t total, double cost, const std::vector<Portion>& portions, const Work& work) {
+void Scheduler::run(const std::string& label, std::uint32_t total, double cost, const std::vector<ChunkSize>& chunk_sizes,
+                    const Work& work) {
     const std::vector<std::size_t> devices = left();
     std::vector<Speed>& speeds = speeds_.try_emplace(label, names_.size()).first->second;
-    Table table(total, cost, portions, speeds, devices);
+    Queue queue(total, cost, chunk_sizes, speeds, devices);
     const auto drive = [&](std::size_t device) {
-        while (const auto run = table.take(device)) {
+        while (const auto chunk = queue.take(device)) {
             try {
-                work(device, run->first, run->count);
-                table.done(device, *run);
+                work(device, chunk->first, chunk->count);
+                queue.done(device, *chunk);
             } catch (const Error& error) {
-                if (is_device_failure(error)) return table.leave(device, *run, [&] { drop(device, error); });
-                return table.end(std::current_exception());
+                if (is_device_failure(error)) return queue.leave(device, *chunk, [&] { drop(device, error); });
+                return queue.end(std::current_exception());
             } catch (...) {
-                return table.end(std::current_exception());
+                return queue.end(std::current_exception());
             }
         }
     };
@@ -255,7 +256,7 @@ void Dealer::deal(const std::string& label, std::uint32_t total, double cost, co
     for (std::size_t k = 1; k < devices.size(); ++k) threads.emplace_back(drive, devices[k]);
     drive(devices.front());
     for (std::thread& thread : threads) thread.join();
-    table.rethrow();
+    queue.rethrow();
 }
 
 } // namespace clvr
