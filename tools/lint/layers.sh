@@ -28,7 +28,7 @@ only host/volume runtime/ host/volume/ kernels/shared/
 only host/appearance runtime/ host/volume/ host/frame/ host/appearance/ kernels/shared/
 only host/phantom runtime/ host/volume/ host/phantom/ kernels/shared/
 only host/frame runtime/ host/frame/
-only host/render runtime/ host/volume/ host/appearance/ host/frame/ host/render/ kernels/shared/
+only host/render runtime/ host/volume/ host/appearance/ host/frame/ host/denoise/ host/render/ kernels/shared/
 only host/denoise runtime/ host/frame/ host/denoise/ kernels/shared/
 only host/io runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/denoise/ host/io/ kernels/shared/
 only host/pairs runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/io/ host/pairs/
