@@ -88,7 +88,7 @@ ExperimentSettings settings_of(const ExperimentOptions& o) {
     picture.input = "demo:" + o.scene; // no scene file is looked for
     if (!picture.size) picture.size = fmt::format("{}x{}", s.scene.width, s.scene.height);
     if (dataset && !picture.transfer && !dataset->transfer_function.empty()) picture.transfer = dataset->transfer_function;
-    if (dataset) picture.zoom = dataset->zoom;
+    if (dataset) picture.settings["camera.zoom"] = dataset->zoom;
     s.scene = scene_of(picture);
     s.scene.volume = volume;
     if (dataset && fs::path(volume).extension() == ".raw") s.scene.reading.spacing = dataset->spacing; // its name has dims and type alone
@@ -238,7 +238,8 @@ void add_experiment_command(CLI::App& app) {
     c->add_option("--test-reference-spp", o->test_reference_spp,
                   "Samples per pixel of the test references [paper 4096, quick 1024, tiny 64]")
         ->group("Views");
-    c->add_option("--seed", o->picture.seed, "Of views, noise, initialisation and patches [0]")->group("Views");
+    add_setting(*c, o->picture, "seed", "Of views, noise, initialisation and patches");
+    c->get_option("--seed")->group("Views");
     c->add_option("--epochs", o->epochs, "Epochs of 50 patches a view [paper 200]")->group("Training");
     c->add_option("--steps", o->steps, "Steps, in place of epochs [quick 3000, tiny 600]")->group("Training");
     c->add_option("--batch", o->batch, "Patches a step [paper 128, quick 8, tiny 4]")->group("Training");

@@ -65,7 +65,7 @@ PairsPlan plan_of(const PairsOptions& o) {
     p.noisy_frames = o.noisy_frames * static_cast<int>(std::max<std::size_t>(1, o.noisy_spp.size()));
     for (const int spp : o.noisy_spp) check("--noisy-spp", spp, 1, largest_spp);
     RenderOptions options = o.scene;
-    if (!options.spp) options.spp = 1;
+    options.settings.try_emplace("spp", 1);
     for (std::size_t k = 0; k < std::max<std::size_t>(1, o.variations.size()); ++k) {
         if (!o.variations.empty()) options.transfer = o.variations[k];
         p.scenes.push_back(scene_of(options));

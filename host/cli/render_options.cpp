@@ -4,6 +4,7 @@
 #include "host/cli/volume_options.hpp"
 #include "host/frame/srgb.hpp"
 #include "host/io/scene/scene_file.hpp"
+#include "host/render/scene_settings.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/atomic_file.hpp"
 
@@ -13,7 +14,7 @@
 #include <charconv>
 #include <cstdlib>
 #include <filesystem>
-#include <map>
+#include <type_traits>
 
 namespace clvr {
 
@@ -52,11 +53,12 @@ Double3 point(const std::string& option, const std::string& text) {
 }
 
 template <class T>
-T choice(const std::string& option, const std::string& text, const std::map<std::string, T>& values) {
-    const auto found = values.find(text);
-    if (found != values.end()) return found->second;
+T choice(const std::string& option, const std::string& text, const Names<T>& values) {
     std::string names;
-    for (const auto& [name, value] : values) names += (names.empty() ? "" : ", ") + name;
+    for (const auto& [name, value] : values) {
+        if (text == name) return value;
+        names += (names.empty() ? "" : ", ") + std::string(name);
+    }
     refuse(option, text, "one of " + names);
 }
 
@@ -125,10 +127,26 @@ std::vector<std::string> view_paths(const std::string& path, int views) {
     return paths;
 }
 
+void add_setting(CLI::App& c, RenderOptions& o, const std::string& key, const std::string& help) {
+    const SceneSetting& setting = scene_setting(key);
+    std::string text = help.empty() ? setting.help : help;
+    visit_setting(setting, Scene(), [&](const auto& usual) {
+        using T = std::decay_t<decltype(usual)>;
+        if (text.back() != ']') text += fmt::format(" [{}]", usual);
+        c.add_option_function<T>(
+             setting.name, [&o, key](const T& value) { o.settings[key] = value; }, text)
+            ->group(setting.group);
+    });
+}
+
 void add_scene_options(CLI::App& c, RenderOptions& o) {
+    const auto add_settings = [&](const std::string& group) {
+        for (const SceneSetting& s : scene_settings())
+            if (s.help && s.group == group) add_setting(c, o, s.key);
+    };
     c.add_option("VOLUME", o.input, "Volume file or folder, scene JSON, or demo:head and the like")->type_name("FILE|DIR|DEMO");
     c.add_option("--size", o.size, "Picture size [640x640]")->type_name("WxH")->group("Output");
-    c.add_option("--spp", o.spp, "Samples per pixel: more take longer and give less noise [64]")->group("Output");
+    add_setting(c, o, "spp");
     c.add_option("--background", o.background, "What is seen past the volume [transparent]")
         ->type_name("transparent|environment|#rrggbb")
         ->group("Output");
@@ -145,7 +163,7 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--shading", o.shading, "Like fog (phase), like surfaces (gradient), or by the local gradient (auto) [auto]")
         ->type_name("auto|phase|gradient")
         ->group("Look");
-    c.add_option("--extinction", o.extinction, "How dense opacity 1 is, in 1/mm [512 / diagonal]")->group("Look");
+    add_settings("Look");
     c.add_option("--clip-box", o.clip_box, "Keep only this part, as shares 0..1 of the volume along its axes")
         ->type_name("I0,J0,K0,I1,J1,K1")
         ->group("Look");
@@ -154,11 +172,7 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
         ->type_name("NX,NY,NZ,OFFSET")
         ->group("Look");
 
-    c.add_option("--azimuth", o.azimuth, "Degrees around the vertical axis; 0 faces a patient, 90 sees the left side [30]")
-        ->group("Camera");
-    c.add_option("--elevation", o.elevation, "Degrees above the horizon [12]")->group("Camera");
-    c.add_option("--zoom", o.zoom, "Above 1 enlarges [1]")->group("Camera");
-    c.add_option("--fov", o.fov, "Vertical field of view in degrees [30]")->group("Camera");
+    add_settings("Camera");
     c.add_flag("--orthographic", o.orthographic, "Parallel projection")->group("Camera");
     c.add_option("--eye", o.eye, "Position of the camera in LPS millimetres (to the patient's left, back, head), with --target")
         ->type_name("X,Y,Z")
@@ -168,19 +182,10 @@ void add_scene_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--environment", o.environment, "The sky, a constant radiance such as 1, or an image (.hdr, .exr, .pfm) [sky]")
         ->type_name("sky|L|FILE")
         ->group("Light");
-    c.add_option("--environment-rotation", o.environment_rotation, "Degrees by which the image is turned around the vertical axis [0]")
-        ->group("Light");
-    c.add_option("--key", o.key, "Strength of the soft key light [1 under the sky, else 0]")->group("Light");
-    c.add_option("--key-azimuth", o.key_azimuth, "Direction of the key light in degrees, relative to the camera's [-40]")->group("Light");
-    c.add_option("--key-elevation", o.key_elevation, "Height of the key light in degrees [45]")->group("Light");
-    c.add_option("--headlight", o.headlight, "Irradiance of a light from the camera [0]")->group("Light");
-    c.add_option("--phase-g", o.phase_g, "Henyey-Greenstein asymmetry, above -1 and below 1 [0]")->group("Light");
-    c.add_option("--bounces", o.bounces, "Greatest number of scattering events; 0: unlimited [8]")->group("Light");
+    add_settings("Light");
 
-    c.add_option("--seed", o.seed, "Seed of the random numbers [0]")->group("Sampling");
-    c.add_option("--feature-samples", o.feature_samples, "Rays per pixel of the noise-free features [4]")
-        ->type_name("1|4")
-        ->group("Sampling");
+    add_settings("Sampling");
+    c.get_option("--feature-samples")->type_name("1|4");
 
     reads_files(c, {"VOLUME", "--tf", "--environment"});
     add_volume_options(c, o.volume);
@@ -199,7 +204,7 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
         ->type_name("SECONDS")
         ->group("Output");
     c.add_option("--turntable", o.turntable, "Write a numbered sequence of N views around the volume")->type_name("N")->group("Output");
-    c.add_option("--exposure", o.exposure, "PNG and JPEG: exposure in stops [0]")->group("Output");
+    add_setting(c, o, "exposure");
     c.add_option("--tonemap", o.tonemap, "PNG and JPEG: tone curve [filmic]")->type_name("filmic|aces|reinhard|none")->group("Output");
     c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Output");
     c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Output");
@@ -217,29 +222,24 @@ Scene scene_of(const RenderOptions& o) {
         s.volume = o.input;
     override_reading(s.reading, o.volume);
 
-    const auto set = [](auto& field, const auto& option) {
-        if (option) field = *option;
+    const auto apply = [&](const std::string& key, const auto& value) {
+        visit_setting(scene_setting(key), s, [&](auto& field) { field = std::get<std::decay_t<decltype(field)>>(value); });
     };
-    set(s.spp, o.spp), set(s.seed, o.seed), set(s.bounces, o.bounces), set(s.feature_samples, o.feature_samples);
-    if (o.seconds > 0 && !o.spp) s.spp = 1 << 20;
-    set(s.exposure, o.exposure), set(s.tonemap, o.tonemap), set(s.phase_g, o.phase_g), set(s.extinction, o.extinction);
-    set(s.camera.azimuth, o.azimuth), set(s.camera.elevation, o.elevation), set(s.camera.zoom, o.zoom), set(s.camera.fov, o.fov);
+    if (o.seconds > 0 && o.settings.count("spp") == 0) s.spp = largest_spp;
+    if (o.tonemap) s.tonemap = *o.tonemap;
     if (o.orthographic) s.camera.orthographic = true;
     if (o.eye) s.camera.eye = point("--eye", *o.eye);
     if (o.target) s.camera.target = point("--target", *o.target);
     if (o.size) set_size(s, *o.size);
-    if (o.mode) s.mode = choice<Mode>("--mode", *o.mode, {{"path", Mode::path}, {"dvr", Mode::dvr}, {"mip", Mode::mip}});
-    if (o.shading)
-        s.shading = choice<Shading>("--shading", *o.shading,
-                                    {{"auto", Shading::automatic}, {"phase", Shading::phase}, {"gradient", Shading::gradient}});
+    if (o.mode) s.mode = choice("--mode", *o.mode, mode_names());
+    if (o.shading) s.shading = choice("--shading", *o.shading, shading_names());
     if (o.transfer == "auto")
         s.transfer.reset();
     else if (o.transfer)
         s.transfer = transfer_of(*o.transfer);
     if (o.environment) set_environment(s, *o.environment);
     if (o.background) set_background(s, *o.background);
-    set(s.light.image_rotation, o.environment_rotation), set(s.light.key, o.key), set(s.light.key_azimuth, o.key_azimuth);
-    set(s.light.key_elevation, o.key_elevation), set(s.light.headlight, o.headlight);
+    for (const auto& [key, value] : o.settings) apply(key, value); // after the environment, which has a key light of its own
     if (o.clip_box) {
         const auto v = numbers("--clip-box", *o.clip_box, 6, "I0,J0,K0,I1,J1,K1 as shares from 0 to 1");
         s.clip_box.emplace();

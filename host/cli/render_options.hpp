@@ -6,8 +6,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace clvr {
@@ -18,10 +21,7 @@ struct RenderOptions {
     std::vector<std::string> outputs;
     VolumeReadOptions volume;
     std::optional<std::string> size, transfer, mode, shading, environment, background, tonemap, clip_box, clip_plane, eye, target;
-    std::optional<double> phase_g, extinction, azimuth, elevation, zoom, fov, exposure, key, key_azimuth, key_elevation, headlight,
-        environment_rotation;
-    std::optional<int> spp, bounces, feature_samples;
-    std::optional<std::uint64_t> seed;
+    std::map<std::string, std::variant<double, int, std::uint64_t, bool>> settings; ///< by the keys of scene_settings()
     bool orthographic = false, list_transfer = false, no_features = false, denoise = false, beside = false;
     double seconds = 0;
     int turntable = 0;
@@ -35,6 +35,8 @@ std::string view_path(const std::string& path, int view);
 /// The files of an output: itself, or with --turntable (`views` above 0) one a view.
 std::vector<std::string> view_paths(const std::string& path, int views);
 
+/// The option of a setting, by its key; `help` stands in for the table's.
+void add_setting(CLI::App& command, RenderOptions& options, const std::string& key, const std::string& help = {});
 /// The options that say what is seen: volume, transfer function, camera, light, size, samples. `device` options too.
 void add_scene_options(CLI::App& command, RenderOptions& options);
 /// Those and what becomes of the picture.

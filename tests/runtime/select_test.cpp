@@ -124,8 +124,13 @@ TEST(Selection, OrderOfTheRules) {
 TEST(Selection, RuleIsSaid) {
     EXPECT_THAT(choose_devices(rich_machine(), {"0", "", {}}, unexpected).rule, testing::HasSubstr("--device 0"));
     EXPECT_THAT(choose_devices(rich_machine(), {"", "0", {}}, unexpected).rule, testing::HasSubstr("CLVR_DEVICE=0"));
-    EXPECT_THAT(choose_devices(rich_machine(), {"", "", {{{"Portable", "Host CPU 9000", 0, 2}}}}, unexpected).rule,
-                testing::HasSubstr("remembered"));
+    auto divisible = rich_machine();
+    for (PlatformFacts& platform : divisible)
+        for (DeviceFacts& d : platform.devices) d.max_sub_devices = 2;
+    EXPECT_THAT(choose_devices(divisible, {"", "", {{{"Portable", "Host CPU 9000", 0, 2}}}}, unexpected).rule,
+                testing::HasSubstr("remembered it"));
+    const auto gone = choose_devices(rich_machine(), {"", "", {{{"Portable", "Host CPU 9000", 0, 2}}}}, last).rule;
+    EXPECT_THAT(gone, testing::HasSubstr("is gone")) << "as it cannot be divided any more";
     EXPECT_THAT(choose_devices(rich_machine(), {}, last).rule, testing::HasSubstr("fastest of 3"));
     const auto one = machine({{"Portable", "", "", {device("Host CPU", DeviceType::cpu)}}});
     EXPECT_THAT(choose_devices(one, {}, unexpected).rule, testing::HasSubstr("only usable device"));

@@ -1,6 +1,7 @@
 #include "host/io/scene/scene_file.hpp"
 #include "host/appearance/transfer_function_json.hpp"
 #include "host/io/volume/dataset_path.hpp"
+#include "host/render/scene_settings.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/atomic_file.hpp"
 #include "runtime/system/json_fields.hpp"
@@ -19,10 +20,6 @@ namespace {
 
 constexpr const char* scene_tag = "scene/1";
 
-template <class E>
-using Names = std::vector<std::pair<const char*, E>>;
-const Names<Mode> modes{{"path", Mode::path}, {"dvr", Mode::dvr}, {"mip", Mode::mip}};
-const Names<Shading> shadings{{"auto", Shading::automatic}, {"phase", Shading::phase}, {"gradient", Shading::gradient}};
 const Names<Light::Environment> environments{
     {"constant", Light::Environment::constant}, {"sky", Light::Environment::sky}, {"image", Light::Environment::image}};
 const Names<Background::Kind> backgrounds{
@@ -45,6 +42,17 @@ void put_optional(ordered_json& to, const char* name, const std::optional<T>& va
     if (value) to[name] = *value;
 }
 
+/// Writes the settings of a section ("" for those on top).
+void put_settings(ordered_json& to, const Scene& scene, const std::string& section) {
+    for (const SceneSetting& setting : scene_settings())
+        if (setting.section() == section) visit_setting(setting, scene, [&](const auto& value) { to[setting.member_name()] = value; });
+}
+
+void get_settings(JsonFields& fields, Scene& scene, const std::string& section) {
+    for (const SceneSetting& setting : scene_settings())
+        if (setting.section() == section) visit_setting(setting, scene, [&](auto& value) { fields.get(setting.member_name(), value); });
+}
+
 ordered_json raw_json(const VolumeReadOptions& raw) {
     ordered_json to = ordered_json::object();
     put_optional(to, "dims", raw.dims);
@@ -62,59 +70,34 @@ void parse_raw(JsonFields fields, VolumeReadOptions& raw) {
     fields.done();
 }
 
-ordered_json camera_json(const Camera& camera) {
-    ordered_json to{{"orthographic", camera.orthographic},
-                    {"fov", camera.fov},
-                    {"azimuth", camera.azimuth},
-                    {"elevation", camera.elevation},
-                    {"zoom", camera.zoom}};
-    put_optional(to, "eye", camera.eye);
-    put_optional(to, "target", camera.target);
-    to["up"] = camera.up;
-    to["height"] = camera.height;
+ordered_json camera_json(const Scene& scene) {
+    ordered_json to;
+    put_settings(to, scene, "camera");
+    put_optional(to, "eye", scene.camera.eye);
+    put_optional(to, "target", scene.camera.target);
+    to["up"] = scene.camera.up;
     return to;
 }
 
-Camera parse_camera(JsonFields fields) {
-    Camera camera;
-    fields.get("orthographic", camera.orthographic);
-    fields.get("fov", camera.fov);
-    fields.get("azimuth", camera.azimuth);
-    fields.get("elevation", camera.elevation);
-    fields.get("zoom", camera.zoom);
-    get_optional(fields, "eye", camera.eye);
-    get_optional(fields, "target", camera.target);
-    fields.get("up", camera.up);
-    fields.get("height", camera.height);
+void parse_camera(JsonFields fields, Scene& scene) {
+    get_settings(fields, scene, "camera");
+    get_optional(fields, "eye", scene.camera.eye);
+    get_optional(fields, "target", scene.camera.target);
+    fields.get("up", scene.camera.up);
     fields.done();
-    return camera;
 }
 
-ordered_json light_json(const Light& light) {
-    return {{"environment", name_of(environments, light.environment)},
-            {"level", light.level},
-            {"image", light.image},
-            {"image_rotation", light.image_rotation},
-            {"key", light.key},
-            {"key_azimuth", light.key_azimuth},
-            {"key_elevation", light.key_elevation},
-            {"key_angle", light.key_angle},
-            {"headlight", light.headlight}};
+ordered_json light_json(const Scene& scene) {
+    ordered_json to{{"environment", name_of(environments, scene.light.environment)}, {"image", scene.light.image}};
+    put_settings(to, scene, "light");
+    return to;
 }
 
-Light parse_light(JsonFields fields) {
-    Light light;
-    fields.choose("environment", light.environment, environments);
-    fields.get("level", light.level);
-    fields.get("image", light.image);
-    fields.get("image_rotation", light.image_rotation);
-    fields.get("key", light.key);
-    fields.get("key_azimuth", light.key_azimuth);
-    fields.get("key_elevation", light.key_elevation);
-    fields.get("key_angle", light.key_angle);
-    fields.get("headlight", light.headlight);
+void parse_light(JsonFields fields, Scene& scene) {
+    fields.choose("environment", scene.light.environment, environments);
+    fields.get("image", scene.light.image);
+    get_settings(fields, scene, "light");
     fields.done();
-    return light;
 }
 
 Background parse_background(JsonFields fields) {
@@ -156,24 +139,14 @@ std::string to_json(const Scene& scene) {
     if (!scene.reading.array.empty()) to["array"] = scene.reading.array;
     if (scene.reading.recursive) to["recursive"] = true;
     if (scene.transfer) to["transfer"] = ordered_json::parse(to_json(*scene.transfer));
-    to["mode"] = name_of(modes, scene.mode);
-    to["shading"] = name_of(shadings, scene.shading);
-    to["phase_g"] = scene.phase_g;
-    to["extinction"] = scene.extinction;
-    to["bounces"] = scene.bounces;
-    to["width"] = scene.width;
-    to["height"] = scene.height;
-    to["spp"] = scene.spp;
-    to["feature_samples"] = scene.feature_samples;
-    to["features"] = scene.features;
-    to["seed"] = scene.seed;
-    to["view"] = scene.view;
-    to["camera"] = camera_json(scene.camera);
-    to["light"] = light_json(scene.light);
+    to["mode"] = name_of(mode_names(), scene.mode);
+    to["shading"] = name_of(shading_names(), scene.shading);
+    put_settings(to, scene, "");
+    to["camera"] = camera_json(scene);
+    to["light"] = light_json(scene);
     to["background"] = {{"kind", name_of(backgrounds, scene.background.kind)}, {"color", scene.background.color}};
     put_optional(to, "clip_box", scene.clip_box);
     if (scene.clip_plane) to["clip_plane"] = {{"normal", scene.clip_plane->normal}, {"offset", scene.clip_plane->offset}};
-    to["exposure"] = scene.exposure;
     to["tonemap"] = scene.tonemap;
     return to.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
 }
@@ -198,24 +171,14 @@ Scene parse_scene(const std::string& json_text, const std::string& where) {
     fields.get("recursive", scene.reading.recursive);
     if (fields.has("raw")) parse_raw(fields.object("raw"), scene.reading);
     if (fields.has("transfer")) scene.transfer = parse_transfer_function(fields.required("transfer"), where);
-    fields.choose("mode", scene.mode, modes);
-    fields.choose("shading", scene.shading, shadings);
-    fields.get("phase_g", scene.phase_g);
-    fields.get("extinction", scene.extinction);
-    fields.get("bounces", scene.bounces);
-    fields.get("width", scene.width);
-    fields.get("height", scene.height);
-    fields.get("spp", scene.spp);
-    fields.get("feature_samples", scene.feature_samples);
-    fields.get("features", scene.features);
-    fields.get("seed", scene.seed);
-    fields.get("view", scene.view);
-    if (fields.has("camera")) scene.camera = parse_camera(fields.object("camera"));
-    if (fields.has("light")) scene.light = parse_light(fields.object("light"));
+    fields.choose("mode", scene.mode, mode_names());
+    fields.choose("shading", scene.shading, shading_names());
+    get_settings(fields, scene, "");
+    if (fields.has("camera")) parse_camera(fields.object("camera"), scene);
+    if (fields.has("light")) parse_light(fields.object("light"), scene);
     if (fields.has("background")) scene.background = parse_background(fields.object("background"));
     get_optional(fields, "clip_box", scene.clip_box);
     if (fields.has("clip_plane")) scene.clip_plane = parse_clip_plane(fields.object("clip_plane"));
-    fields.get("exposure", scene.exposure);
     fields.get("tonemap", scene.tonemap);
     fields.done();
     try {
@@ -255,7 +218,7 @@ bool is_scene_file(const std::string& path) {
     in.read(start.data(), static_cast<std::streamsize>(start.size()));
     start.resize(static_cast<std::size_t>(in.gcount()));
     const std::size_t first = start.find_first_not_of("\xef\xbb\xbf \t\r\n");
-    return first != start.npos && start[first] == '{' && start.find("\"clvr.format\"") != start.npos;
+    return first != start.npos && start[first] == '{' && start.find(std::string("\"") + format_key + "\"") != start.npos;
 }
 
 } // namespace clvr
