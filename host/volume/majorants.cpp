@@ -1,6 +1,6 @@
 // Ranges of the majorant cells, and the greatest opacity within each range.
 #include "host/volume/bricks.hpp"
-#include "host/volume/slabs.hpp"
+#include "runtime/parallel.hpp"
 
 #include <algorithm>
 
@@ -87,9 +87,8 @@ MajorantGrid majorant_grid(const Voxels& v) {
     grid.cells = cells_of(v.dims, grid.log2_edge);
     grid.range.resize(2 * grid.count());
     with_voxel_type(v.type, [&](auto sample) {
-        for_slabs(grid.cells[2], [&](int first, int last) {
-            for (int z = first; z < last; ++z) layer_ranges<decltype(sample)>(v, grid, z);
-        });
+        for_each_index(static_cast<std::size_t>(grid.cells[2]),
+                       [&](std::size_t z) { layer_ranges<decltype(sample)>(v, grid, static_cast<int>(z)); });
     });
     return grid;
 }
@@ -98,9 +97,8 @@ std::vector<float> majorants(const MajorantGrid& grid, const TransferTable& tabl
     const RunMaxima greatest(table.opacity);
     const TableIndex index(table);
     std::vector<float> result(grid.count());
-    const int rows = grid.cells[1] * grid.cells[2];
-    for_slabs(rows, [&](int first, int last) {
-        for (std::size_t c = static_cast<std::size_t>(first) * grid.cells[0]; c < static_cast<std::size_t>(last) * grid.cells[0]; ++c)
+    for_parts(grid.count(), [&](std::size_t, std::size_t first, std::size_t last) {
+        for (std::size_t c = first; c < last; ++c)
             result[c] =
                 greatest(static_cast<int>(std::floor(index(grid.range[2 * c]))), static_cast<int>(std::ceil(index(grid.range[2 * c + 1]))));
     });
