@@ -8,8 +8,8 @@
 
 namespace clvr {
 
-/// Scanline float32 ZIP OpenEXR with all channels, both windows and all attributes. Written beside, synced, renamed. Throws Error{input}
-/// when it cannot be written.
+/// Scanline float32 ZIP OpenEXR with all channels, both windows and all attributes, packed on all cores. Written beside, synced, renamed.
+/// Throws Error{input} when it cannot be written.
 void write_exr(const Frame& frame, const std::string& path);
 /// Reads any scanline or tiled, half or float (or uint) EXR, channels in any order; the data window becomes the frame. Parts are joined
 /// (exr_names.hpp); luminance and chroma become R G B, luminance alone too. Of several views the first, of mipmaps the largest. What is
