@@ -67,6 +67,14 @@ TEST_F(Bench, MeasuresAndWrites) {
     EXPECT_GT(std::filesystem::file_size(file("x.html")), 1000u);
 }
 
+TEST_F(Bench, MeasuresALiveView) {
+    const Outcome o = run({"--live", "--device", "0", "--tiny"});
+    EXPECT_EQ(o.exit_code, 0) << o.err;
+    for (const char* what : {"moving", "transfer function", "settled", "frames/s", "march ", "display "})
+        EXPECT_THAT(o.out, HasSubstr(what));
+    EXPECT_EQ(run({"--live", "--device", "0", "--tiny", "--volume", file("none.mha")}).exit_code, 3);
+}
+
 TEST_F(Bench, AWrongResultIsSaid) { // the stage reads its kernel from a folder where a sign is turned
     std::filesystem::create_directories(home.path() / "kernels/probe");
     std::ofstream(home.path() / "kernels/probe/triad.cl") << "#include \"lib/stream.clh\"\n"

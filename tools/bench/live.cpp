@@ -44,7 +44,8 @@ LiveRow measure_frames(Device& device, const std::string& what, const Scene& sce
 
 } // namespace
 
-std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, const Scene& first, const Model& model, double seconds) {
+std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, const Scene& first, const Model& model, double seconds,
+                                  int divider) {
     Scene scene = first;
     RenderSession session({device}, volume, scene);
     Pipeline pipeline(model);
@@ -59,33 +60,28 @@ std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, 
         session.picture(scene.background, {scene.tonemap, scene.exposure}, true);
     };
     std::vector<LiveRow> rows;
+    const auto sized = [&](int width, int height) {
+        scene.width = width / divider, scene.height = height / divider;
+        session.set_size(scene.width, scene.height);
+    };
+    const auto turn = [&] {
+        scene.camera.azimuth += 3;
+        session.set_view(scene);
+    };
     for (const auto& [width, height] : {std::pair{240, 168}, {320, 320}, {640, 640}}) {
-        scene.width = width, scene.height = height;
-        session.set_size(width, height);
-        rows.push_back(measure_frames(device, "moving", scene, seconds, [&] {
-            scene.camera.azimuth += 3;
-            session.set_view(scene);
-            show(1, true);
-        }));
+        sized(width, height);
+        rows.push_back(measure_frames(device, "moving", scene, seconds, [&] { turn(), show(1, true); }));
     }
-    scene.width = scene.height = 320;
-    session.set_size(320, 320);
+    sized(320, 320);
     if (!scene.transfer) scene.transfer = automatic_transfer_function(volume.voxels, stored_histogram(volume.voxels));
     rows.push_back(measure_frames(device, "transfer function", scene, seconds, [&, step = 0]() mutable {
         scene.transfer->points.back().color[0] = ++step % 2 ? 0.8 : 0.9;
         session.set_appearance(scene);
         show(1, true);
     }));
-    scene.width = scene.height = 640;
-    session.set_size(640, 640);
-    rows.push_back(measure_frames(device, "first of settled", scene, seconds, [&] {
-        scene.camera.azimuth += 3;
-        session.set_view(scene);
-        show(4, true);
-    }));
-    rows.push_back(measure_frames(device, "settled", scene, seconds, [&] {
-        show(4, false);
-    }));
+    sized(640, 640);
+    rows.push_back(measure_frames(device, "first of settled", scene, seconds, [&] { turn(), show(4, true); }));
+    rows.push_back(measure_frames(device, "settled", scene, seconds, [&] { show(4, false); }));
     return rows;
 }
 

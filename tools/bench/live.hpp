@@ -19,8 +19,10 @@ struct LiveRow {
 };
 
 /// Turns the camera (one sample and one feature ray a pixel, denoised), changes the transfer function, then lets the view settle (four
-/// feature rays; samples are added, each frame denoised). Each row takes about `seconds`, after two frames of warming up.
-std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, const Scene& scene, const Model& model, double seconds);
+/// feature rays; samples are added, each frame denoised). Each row takes about `seconds`, after two frames of warming up. Sides of the
+/// pictures are divided by `divider`.
+std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, const Scene& scene, const Model& model, double seconds,
+                                  int divider = 1);
 
 /// A table of the rows, and where the time of each goes.
 std::string live_table(const std::vector<LiveRow>& rows);
