@@ -18,9 +18,9 @@ __kernel void cross_bilateral(__constant FilterParams* p, __global const float* 
             vfloat opacity = v_load(features + at), near = v_exp(fma(feature_distance(&here, &there), (vfloat)(p->feature), spatial));
             weights = fma(opacity, near, weights);
             vfloat w = opacity * near;
-            for (int c = 0; c < 3; ++c) sum[c] = fma(w, v_load(colour + c * p->plane + at), sum[c]);
+            for (int c = 0; c < 3; ++c) sum[c] = fma(w, v_load(colour + (size_t)c * (size_t)p->plane + at), sum[c]);
         }
     vmask inside = v_lt((vint)(x) + v_iota, (vint)(p->width)), some = v_gt(weights, (vfloat)(0.0f)) & inside;
     for (int c = 0; c < 3; ++c)
-        v_store(v_select(some, sum[c] / v_select(some, weights, (vfloat)(1.0f)), (vfloat)(0.0f)), out + c * p->plane + centre);
+        v_store(v_select(some, sum[c] / v_select(some, weights, (vfloat)(1.0f)), (vfloat)(0.0f)), out + (size_t)c * (size_t)p->plane + centre);
 }

@@ -15,12 +15,12 @@ __kernel void spatial_variance(__constant FilterParams* p, __global const float*
             int at = centre + j * p->row + i;
             Features there = load_features(p, features, at);
             vfloat opacity = v_load(features + at), near = v_exp(feature_distance(&here, &there) * p->feature), w = opacity * near;
-            vfloat l = luminance(v_load(colour + at), v_load(colour + p->plane + at), v_load(colour + 2 * p->plane + at));
+            vfloat l = luminance(v_load(colour + at), v_load(colour + p->plane + at), v_load(colour + (size_t)2 * (size_t)p->plane + at));
             weights = fma(opacity, near, weights);
             first = fma(w, l, first);
             second = fma(w * l, l, second);
         }
     vmask inside = v_lt((vint)(x) + v_iota, (vint)(p->width)), some = v_gt(weights, (vfloat)(0.0f)) & inside;
     vfloat divisor = v_select(some, weights, (vfloat)(1.0f)), mean = first / divisor;
-    v_store(v_select(some, v_max(fma(-mean, mean, second / divisor), (vfloat)(0.0f)), (vfloat)(0.0f)), colour + 3 * p->plane + centre);
+    v_store(v_select(some, v_max(fma(-mean, mean, second / divisor), (vfloat)(0.0f)), (vfloat)(0.0f)), colour + (size_t)3 * (size_t)p->plane + centre);
 }

@@ -43,7 +43,7 @@ __kernel void weight_gradient(__constant DenoiseParams* p, __global const float*
             for (int k = 0; k < CLVR_KERNEL; ++k) v[k] = v_load(in + x + k);
 #pragma unroll
             for (int c = 0; c < CLVR_BLOCK; ++c) {
-                vfloat g = v_load(gradient + c * p->plane + x);
+                vfloat g = v_load(gradient + (size_t)c * (size_t)p->plane + x);
 #pragma unroll
                 for (int k = 0; k < CLVR_KERNEL; ++k) sum[c][k] = fma(g, v[k], sum[c][k]);
             }

@@ -219,6 +219,7 @@ void Device::set_arg_bytes(Kernel& k, cl_uint i, std::size_t bytes, const void* 
 void Device::enqueue(Kernel& k, Range global, Range local, Work work) {
     const std::size_t group = local.x * local.y * local.z;
     if (group == 0) throw Error(ErrorKind::internal, "a local size of 0", k.label_);
+    if (local.z != 1) throw Error(ErrorKind::internal, "a group of more than one item along z", k.label_);
     if (global.x == 0 || global.y == 0 || global.z == 0) return;
     const std::size_t* items = state_->facts.max_work_item;
     if (group > k.max_local_items_ || local.x > items[0] || local.y > items[1] || local.z > items[2])
@@ -226,7 +227,7 @@ void Device::enqueue(Kernel& k, Range global, Range local, Work work) {
                     fmt::format("a local size of {}x{}x{} is above the limit of {} (at most {}x{}x{})", local.x, local.y, local.z,
                                 k.max_local_items_, items[0], items[1], items[2]),
                     state_->doing(k.label_));
-    const cl::NDRange rounded(rounded_up(global.x, local.x), rounded_up(global.y, local.y), rounded_up(global.z, local.z));
+    const cl::NDRange rounded(rounded_up(global.x, local.x), rounded_up(global.y, local.y), global.z);
     cl::Event event;
     cl_check([&] { return state_->doing(k.label_); },
              [&] {

@@ -20,7 +20,8 @@ namespace clvr {
 /// Preprocessor definitions of a kernel build: name -> value, in sorted order, part of the program cache's key.
 using Defines = std::map<std::string, std::string>;
 
-/// Work-items wanted per dimension. `launch` rounds each up to a multiple of the local size, so every kernel guards its index.
+/// Work-items wanted per dimension. `launch` rounds x and y up to a multiple of the local size, so every kernel guards them; z is never
+/// more than was wanted, as a group is one item deep.
 struct Range {
     std::size_t x = 1, y = 1, z = 1;
 };

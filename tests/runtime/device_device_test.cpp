@@ -189,6 +189,7 @@ TEST_F(Launches, ThatCannotBeAreRefused) {
     Buffer numbers = device.buffer(16, "numbers");
     Kernel iota = device.kernel("t/iota");
     EXPECT_EQ(error_of([&] { device.launch(iota, {16}, {0}, {}, numbers, 0, cl_uint{4}); }).kind(), ErrorKind::internal);
+    EXPECT_EQ(error_of([&] { device.launch(iota, {16, 1, 2}, {1, 1, 2}, {}, numbers, 0, cl_uint{4}); }).kind(), ErrorKind::internal);
     const std::size_t above = 2 * device.facts().max_work_group;
     EXPECT_EQ(error_of([&] { device.launch(iota, {above}, {above}, {}, numbers, 0, cl_uint{4}); }).kind(), ErrorKind::device);
     const Error wrong_size = error_of([&] { device.launch(iota, {4}, {1}, {}, numbers, 'c', cl_uint{4}); });
