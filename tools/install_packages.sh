@@ -8,8 +8,9 @@ set -euo pipefail
 build=(build-essential cmake ninja-build
     ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd           # OpenCL, and a device that every machine has
     libgdcm-dev libtiff-dev libhdf5-dev libpugixml-dev                # volume files
-    zlib1g-dev libbz2-dev liblz4-dev                                  # what they are packed with
+    zlib1g-dev libbz2-dev liblz4-dev libdeflate-dev                   # what they are packed with
     libopenexr-dev libpng-dev libturbojpeg0-dev                       # pictures
+    libtbb-dev                                                        # work on all cores
     libclblast-dev                                                    # matrix products in training
     libcurl4-openssl-dev                                              # downloads
     libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev) # command line, JSON, text, checksums

@@ -1,5 +1,5 @@
 #include "host/appearance/majorants.hpp"
-#include "host/volume/slabs.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +37,8 @@ std::vector<float> majorants(const MajorantGrid& grid, const TransferTable& tabl
     const RunMaxima greatest(table.opacity);
     const TableIndex index(table);
     std::vector<float> result(grid.count());
-    const int rows = grid.cells[1] * grid.cells[2];
-    for_slabs(rows, [&](int first, int last) {
-        for (std::size_t c = static_cast<std::size_t>(first) * grid.cells[0]; c < static_cast<std::size_t>(last) * grid.cells[0]; ++c)
+    for_parts(grid.count(), [&](std::size_t, std::size_t first, std::size_t last) {
+        for (std::size_t c = first; c < last; ++c)
             result[c] =
                 greatest(static_cast<int>(std::floor(index(grid.range[2 * c]))), static_cast<int>(std::ceil(index(grid.range[2 * c + 1]))));
     });

@@ -117,7 +117,7 @@ TransferFunction body_transfer_function() {
 } // namespace
 
 TransferFunction automatic_transfer_function(const Voxels& v, const Histogram& h) {
-    const ValueCounts counts = value_counts(v, h.low, h.high);
+    const ValueCounts counts = value_counts(v, h);
     TransferFunction tf;
     if (hounsfield_units(v, counts)) {
         tf = body_transfer_function();

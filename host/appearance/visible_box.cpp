@@ -1,6 +1,6 @@
 #include "host/appearance/visible_box.hpp"
 #include "host/appearance/majorants.hpp"
-#include "host/volume/slabs.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -92,11 +92,12 @@ template <class T>
 VoxelBox visible_voxels(const Voxels& v, const MajorantGrid& grid, const TransferTable& table, double threshold) {
     const std::vector<float> opacity = majorants(grid, table);
     const Visible<T> visible(table, threshold);
-    VoxelBox halves[2];
-    for_slabs(v.dims[2], [&](int z0, int z1) {
-        VoxelBox& box = halves[z0 != 0];
+    const auto slices = static_cast<std::size_t>(v.dims[2]);
+    std::vector<VoxelBox> boxes(part_count(slices));
+    for_parts(slices, [&](std::size_t part, std::size_t z0, std::size_t z1) {
+        VoxelBox& box = boxes[part];
         Runs runs;
-        for (int z = z0; z < z1; ++z) {
+        for (int z = static_cast<int>(z0); z < static_cast<int>(z1); ++z) {
             const int cell_z = std::min(z >> grid.log2_edge, grid.cells[2] - 1);
             for (int y = 0, runs_y = -1; y < v.dims[1]; ++y) {
                 const int cell_y = std::min(y >> grid.log2_edge, grid.cells[1] - 1);
@@ -110,8 +111,9 @@ VoxelBox visible_voxels(const Voxels& v, const MajorantGrid& grid, const Transfe
             }
         }
     });
-    halves[0].add(halves[1].low, halves[1].high);
-    return halves[0];
+    VoxelBox all;
+    for (const VoxelBox& box : boxes) all.add(box.low, box.high);
+    return all;
 }
 
 } // namespace

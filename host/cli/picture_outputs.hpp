@@ -1,7 +1,8 @@
 // The pictures that a command writes.
 #pragma once
-#include "host/frame/tonemap.hpp"
+#include "host/frame/display_pixels.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,14 @@ public:
     explicit PictureOutputs(const std::vector<std::string>& paths, const std::string& over = "");
     /// write_frame for each path.
     void write(const Frame& frame, const Tonemap& tonemap, const std::vector<std::string>& paths);
+    /// Only PNG and JPEG: `pixels(alpha)` are those of display_pixels.
+    void write(const std::function<DisplayPixels(bool alpha)>& pixels, const std::vector<std::string>& paths);
 
 private:
     std::string over_;
     bool said_alpha_ = false, said_aspect_ = false;
+
+    void say_clear(const std::string& path);
 };
 
 } // namespace clvr

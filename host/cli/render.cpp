@@ -5,8 +5,7 @@
 #include "host/cli/picture_outputs.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
-#include "host/denoise/channels.hpp"
-#include "host/denoise/denoiser.hpp"
+#include "host/render/pipeline.hpp"
 #include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
@@ -55,63 +54,38 @@ void add_provenance(Frame& frame, const Scene& scene, const std::vector<Device>&
     frame.attributes["clvr.kernels.sha256"] = kernels_sha256();
 }
 
-/// Denoises on the first device that can.
-class FrameDenoiser {
-public:
-    explicit FrameDenoiser(Model model) : model_(std::move(model)) {}
-    bool wants_light() const { return reads_light(model_); }
-    /// Where the session keeps the picture on a device, it is denoised there.
-    Frame denoise(RenderSession& session, const Background& background, bool beauty_alone) {
-        if (Film* const film = session.film()) {
-            denoiser_on(film->device()).denoise(*film);
-            return session.frame(background, beauty_alone);
-        }
-        const Frame noisy = session.frame();
-        std::vector<Device> devices = session.devices();
-        Frame frame = on_first(devices, [&](Device& device) { return denoiser_on(device).denoise(noisy); });
-        session.lay_background(frame, background);
-        return frame;
-    }
-
-private:
-    Denoiser& denoiser_on(Device& device) {
-        if (!denoiser_ || !is_same(*on_, device)) denoiser_.emplace(device, model_);
-        on_ = device;
-        return *denoiser_;
-    }
-
-    Model model_;
-    std::optional<Denoiser> denoiser_; // kept from view to view
-    std::optional<Device> on_;
-};
-
 /// Renders one view and writes it to all outputs. Returns the samples reached.
-int render_view(RenderSession& session, FrameDenoiser* denoiser, const Scene& scene, const RenderOptions& o,
+int render_view(RenderSession& session, Pipeline& pipeline, const Scene& scene, const RenderOptions& o,
                 const std::atomic<bool>& interrupted, PictureOutputs& pictures, const std::vector<std::string>& outputs,
                 const std::string& label) {
     const bool any_exr = std::any_of(outputs.begin(), outputs.end(), is_exr_path);
     Scene wanted = scene;
-    wanted.features = denoiser || (scene.features && any_exr); // a PNG alone does not need them
+    wanted.features &= any_exr; // a PNG alone does not need them
     {
         ProgressBar bar(label, false);
         const double paths = static_cast<double>(scene.width) * scene.height * scene.spp;
         RenderControl control;
         control.seconds = o.seconds;
         control.cancelled = &interrupted;
-        control.light = any_exr || (denoiser && denoiser->wants_light());
+        control.light = any_exr;
         std::atomic<int> reached{0};
         control.progress = [&](const RenderProgress& p) {
             if (reached.exchange(p.samples) < p.samples) spdlog::debug("{} samples per pixel done", p.samples);
             const double share = o.seconds > 0 ? std::min(1.0, bar.seconds() / o.seconds) : p.done;
             bar.update(share, fmt::format("{} spp, {:.2f} Mpaths/s", p.samples, p.done * paths / bar.seconds() * 1e-6));
         };
-        take(session, wanted, control);
+        pipeline.run(session, wanted, control);
     }
-    Frame frame = denoiser ? denoiser->denoise(session, scene.background, !any_exr) : session.frame(scene.background, !any_exr);
     Scene made = scene;
-    made.spp = scene.mode == Mode::path ? std::stoi(frame.attributes.at("clvr.spp")) : scene.spp;
-    add_provenance(frame, made, session.devices());
-    pictures.write(frame, {made.tonemap, made.exposure}, outputs);
+    made.spp = scene.mode == Mode::path ? session.samples() : scene.spp;
+    const Tonemap tonemap{made.tonemap, made.exposure};
+    if (any_exr) {
+        Frame frame = session.frame(scene.background);
+        add_provenance(frame, made, session.devices());
+        pictures.write(frame, tonemap, outputs);
+    } else {
+        pictures.write([&](bool alpha) { return session.picture(scene.background, tonemap, alpha); }, outputs);
+    }
     return made.spp;
 }
 
@@ -167,8 +141,7 @@ void render(RenderOptions o) {
     RenderSession session(devices, volume, scene, environment, o.turntable > 0);
     for (const auto& w : session.warnings()) spdlog::warn("{}", w);
 
-    std::optional<FrameDenoiser> denoiser;
-    if (model) denoiser.emplace(*model);
+    Pipeline pipeline(model);
     const double azimuth = scene.camera.azimuth;
     int reached = 0;
     for (int view = 0; view < std::max(1, o.turntable) && !interrupted; ++view) {
@@ -179,7 +152,7 @@ void render(RenderOptions o) {
             scene.view = view;
             session.set_view(scene, true);
         }
-        reached = render_view(session, denoiser ? &*denoiser : nullptr, scene, o, interrupted, pictures, outputs,
+        reached = render_view(session, pipeline, scene, o, interrupted, pictures, outputs,
                               o.turntable > 0 ? fmt::format("view {}/{}", view + 1, o.turntable) : "rendering");
     }
     if (!o.save_scene.empty()) {

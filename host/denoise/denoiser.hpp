@@ -40,6 +40,8 @@ public:
 private:
     struct State;
     std::unique_ptr<State> state_;
+    /// Has the programs built that a frame takes, while its channels are gathered.
+    void prepare(const Frame& frame, bool show_levels);
 };
 
 } // namespace clvr

@@ -11,8 +11,9 @@ namespace {
 
 bool is_cpu(const Device& device) { return device.facts().type == DeviceType::cpu; }
 int conv_width(const Device& device) { return device.tunable(tunables::conv_width); }
-/// Vectors of a row that a work-item takes: 5, or 4 where that fills rows of this width better.
+/// Vectors of a row that a work-item takes: with many registers 5, or 4 where that fills rows of this width better.
 int conv_vectors(const Device& device, int row_width) {
+    if (conv_width(device) == 4 || conv_width(device) == 8) return device.tunable(tunables::conv_vectors);
     const auto padded = [&](int vectors) { return (row_width - 1) / (conv_width(device) * vectors) * vectors; };
     return device.tunable(tunables::conv_vectors, padded(5) <= padded(4) ? 5 : 4);
 }
@@ -22,6 +23,33 @@ Range conv_group(const Device& device, int row_width) {
     auto x = static_cast<std::size_t>(device.tunable(tunables::conv_group_x));
     while (x > 1 && conv_step(device, row_width) * static_cast<int>(x / 2) >= row_width) x /= 2; // more would only pad the row
     return {x, static_cast<std::size_t>(device.tunable(tunables::conv_group_y))};
+}
+
+Defines conv_defines(const Device& device, int in, int out, int kernel, int row_width) {
+    return {{"CLVR_IN", std::to_string(in)},
+            {"CLVR_OUT", std::to_string(out)},
+            {"CLVR_KERNEL", std::to_string(kernel)},
+            {"CLVR_WIDTH", std::to_string(conv_width(device))},
+            {"CLVR_VECTORS", std::to_string(conv_vectors(device, row_width))},
+            {"CLVR_BLOCK", std::to_string(channels_at_once(out, device.tunable(tunables::conv_block)))}};
+}
+
+int splat_bins(const Device& device, const shared::GridLevel& level) { return std::min(device.tunable(tunables::splat_bins), level.depth); }
+
+Defines splat_defines(const Device& device, const shared::GridLevel& level, bool sums) {
+    const int bins = splat_bins(device, level);
+    return {{"CLVR_WIDTH", std::to_string(conv_width(device))},
+            {"CLVR_BINS", std::to_string(bins)},
+            {"CLVR_WHOLE", bins == level.depth ? "1" : "0"},
+            {"CLVR_SUMS", sums ? "1" : "0"}};
+}
+
+Defines assemble_defines(const Device& device) { return {{"CLVR_WIDTH", std::to_string(conv_width(device))}}; }
+
+Defines slice_defines(const Device& device, const Model& model, bool show) {
+    return {{"CLVR_WIDTH", std::to_string(conv_width(device))},
+            {"CLVR_SHOW", show ? "1" : "0"},
+            {"CLVR_KNOWN", model.control_variate ? "1" : "0"}};
 }
 
 int round_up(int n, int multiple) { return (n + multiple - 1) / multiple * multiple; }
@@ -42,15 +70,9 @@ int Convolution::row_granularity(const Device& device, int row_width) {
 Convolution::Convolution(Device& device, const std::string& stage, int in, int out, int kernel, std::size_t first, std::size_t first_bias,
                          bool mirrored, int row_width)
     : in_(in), out_(out), size_(kernel) {
-    const int block = channels_at_once(out, device.tunable(tunables::conv_block)), width = conv_width(device),
-              vectors = conv_vectors(device, row_width);
-    step_ = width * vectors;
-    kernel_ = device.kernel(stage, {{"CLVR_IN", std::to_string(in)},
-                                    {"CLVR_OUT", std::to_string(out)},
-                                    {"CLVR_KERNEL", std::to_string(kernel)},
-                                    {"CLVR_WIDTH", std::to_string(width)},
-                                    {"CLVR_VECTORS", std::to_string(vectors)},
-                                    {"CLVR_BLOCK", std::to_string(block)}});
+    const int block = channels_at_once(out, device.tunable(tunables::conv_block));
+    step_ = conv_step(device, row_width);
+    kernel_ = device.kernel(stage, conv_defines(device, in, out, kernel, row_width));
     group_ = kernel_.group(conv_group(device, row_width));
     pack_ = device.kernel("denoise/pack_weights");
     const std::size_t taps = static_cast<std::size_t>(kernel) * kernel;
@@ -124,17 +146,11 @@ std::size_t NeuralGrid::bytes(const Device& device, const Model& model, const Ba
 NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShape& shape)
     : device_(device), levels_(static_cast<int>(model.levels.size())), channels_(static_cast<int>(model.channels.size())), batch_(shape),
       params_(params_of(device, model, shape.width, shape.height)) {
-    const std::string width = std::to_string(pixel_width(device_));
-    assemble_ = device_.kernel("denoise/assemble", {{"CLVR_WIDTH", width}});
-    slice_ = device_.kernel(
-        "denoise/slice", {{"CLVR_WIDTH", width}, {"CLVR_SHOW", shape.show ? "1" : "0"}, {"CLVR_KNOWN", model.control_variate ? "1" : "0"}});
+    assemble_ = device_.kernel("denoise/assemble", assemble_defines(device_));
+    slice_ = device_.kernel("denoise/slice", slice_defines(device_, model, shape.show));
     for (int l = 0; l < levels_; ++l) {
-        bins_.push_back(std::min(device_.tunable(tunables::splat_bins), params_.level[l].depth));
-        for (auto [kernels, sums] : {std::pair(&splat_, "0"), {&sum_, "1"}})
-            kernels->push_back(device_.kernel("denoise/splat", {{"CLVR_WIDTH", width},
-                                                                {"CLVR_BINS", std::to_string(bins_.back())},
-                                                                {"CLVR_WHOLE", bins_.back() == params_.level[l].depth ? "1" : "0"},
-                                                                {"CLVR_SUMS", sums}}));
+        bins_.push_back(splat_bins(device_, params_.level[l]));
+        splat_.push_back(device_.kernel("denoise/splat", splat_defines(device_, params_.level[l], false)));
     }
     const std::size_t conv1 = model.conv1_weight.size(), bias1 = model.conv1_bias.size(), conv2 = model.conv2_weight.size();
     to_hidden_ = Convolution(device_, "denoise/hidden", channels_, model.hidden, model.kernel, 0, conv1, false, shape.width);
@@ -159,6 +175,17 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
     remodulation_ = device_.buffer(pixels() * 16, "albedo");
     cells_ = device_.buffer(std::size_t{16} * (params_.cells * shape.images + 1), "bilateral grids") /* slicing reads cells in pairs */;
     device_.fill(cells_, 0); // the last pair's second cell has the weight 0, but is read: no NaN may lie there
+}
+
+void NeuralGrid::prepare(Device& device, const Model& model, int width, int height, bool show) {
+    const shared::DenoiseParams params = params_of(device, model, width, height);
+    const int channels = static_cast<int>(model.channels.size());
+    device.prepare("denoise/assemble", assemble_defines(device));
+    device.prepare("denoise/slice", slice_defines(device, model, show));
+    for (int l = 0; l < params.levels; ++l) device.prepare("denoise/splat", splat_defines(device, params.level[l], false));
+    device.prepare("denoise/hidden", conv_defines(device, channels, model.hidden, model.kernel, width));
+    device.prepare("denoise/pack_weights");
+    device.prepare("denoise/guides", conv_defines(device, model.hidden, model.outputs(), model.kernel, width));
 }
 
 int NeuralGrid::pixel_width(const Device& device) { return conv_width(device); }
@@ -205,6 +232,8 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
 void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {
     const shared::GridLevel& l = params_.level[level];
     const auto runs = static_cast<std::size_t>((l.depth + bins_[level] - 1) / bins_[level]);
+    if (sums && sum_.empty()) // in training
+        for (int k = 0; k < levels_; ++k) sum_.push_back(device_.kernel("denoise/splat", splat_defines(device_, params_.level[k], true)));
     Kernel& kernel = sums ? sum_[level] : splat_[level];
     const Range group = is_cpu(device_) ? Range{1} : kernel.group(Range{32, 4});
     const double count = static_cast<double>(params_.width) * params_.height * images;

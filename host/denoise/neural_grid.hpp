@@ -52,6 +52,8 @@ class NeuralGrid {
 public:
     /// Allocates the batch's buffers. Throws Error{device_memory}.
     NeuralGrid(const Device& device, const Model& model, const BatchShape& shape);
+    /// Has the programs built that forward() takes for such images (Device::prepare).
+    static void prepare(Device& device, const Model& model, int width, int height, bool show);
 
     /// Takes the parameters (order of Model::flat).
     void set_parameters(const Buffer& parameters);

@@ -33,6 +33,7 @@ private:
     struct Inflater;
     std::size_t inflate_some(void* to, std::size_t bytes);
     std::size_t read_file(void* to, std::size_t bytes);
+    std::size_t read_at_once(void* to, std::size_t bytes);
 
     std::string path_;
     std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;

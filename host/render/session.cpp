@@ -91,6 +91,7 @@ struct RenderSession::HostSums {
     };
     Sums sums, next; // of whole passes, and of the pass that runs
     Frame channels;
+    std::optional<Frame> filtered; // over nothing
 };
 
 RenderSession::RenderSession(const std::vector<Device>& devices) : scheduler_(devices) {
@@ -181,7 +182,7 @@ void RenderSession::set_scene(const PreparedVolume& volume, const Scene& scene, 
 
 void RenderSession::restart() {
     samples_ = resolved_ = rays_ = 0;
-    if (film_) film_->denoised = false;
+    drop_filtered();
     traced_ = false;
     marched_.clear();
 }
@@ -427,7 +428,18 @@ void RenderSession::resolve() {
         });
     }
     resolved_ = samples_;
+    drop_filtered();
+}
+
+/// The picture is the samples' mean again.
+void RenderSession::drop_filtered() {
     if (film_) film_->denoised = false;
+    if (host_) host_->filtered.reset();
+}
+
+void RenderSession::set_filtered(Frame filtered) {
+    if (!host_) throw Error(ErrorKind::internal, "the picture lies on a device", "RenderSession::set_filtered");
+    host_->filtered = std::move(filtered);
 }
 
 Film* RenderSession::film() {
@@ -449,7 +461,14 @@ Frame RenderSession::frame(const Background& background, bool beauty_alone) {
         names.insert(names.end(), beauty_channels.begin(), beauty_channels.begin() + (traced_ && samples_ > 1 && !beauty_alone ? 7 : 4));
     if (denoised && !beauty_alone) names.insert(names.end(), {"noisy.R", "noisy.G", "noisy.B", "noisy.A"});
     if (denoised) frame.attributes["clvr.denoised"] = "1";
-    for (const std::string& name : names) frame.channels[name] = film_ ? film_->download(name) : host_->channels.at(name);
+    if (host_ && host_->filtered) {
+        frame = *host_->filtered;
+        if (beauty_alone)
+            for (auto at = frame.channels.begin(); at != frame.channels.end();)
+                at = std::find(names.begin(), names.end(), at->first) == names.end() ? frame.channels.erase(at) : std::next(at);
+    } else {
+        for (const std::string& name : names) frame.channels[name] = film_ ? film_->download(name) : host_->channels.at(name);
+    }
     if (samples_ > 0) frame.attributes["clvr.spp"] = std::to_string(samples_);
     if (samples_ > 0) lay_background(frame, background);
     return frame;
@@ -512,7 +531,7 @@ void RenderSession::lay_background(Frame& frame, const Background& background) {
 }
 
 void take(RenderSession& session, const Scene& scene, const RenderControl& control) {
-    session.restart();
+    if (!control.go_on) session.restart();
     if (scene.features && !session.march_features(scene.feature_samples, control))
         throw Error(ErrorKind::interrupted, "interrupted before the features were done; nothing was saved");
     if (scene.mode != Mode::path) {

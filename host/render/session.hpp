@@ -31,6 +31,7 @@ struct RenderProgress {
 struct RenderControl {
     bool light = true;                                   ///< features have light.* channels (the others' bits do not depend on it)
     bool draft = false;                                  ///< sky light that must be found anew may be coarse: for a picture in motion
+    bool go_on = false;                                  ///< take() adds to the samples that are there
     double seconds = 0;                                  ///< stop adding passes when they would end later than this; 0: no limit
     const std::atomic<bool>* cancelled = nullptr;        ///< set by Ctrl-C: the passes finished so far are the result
     std::function<void(const RenderProgress&)> progress; ///< called from the calling thread or a worker, now and then
@@ -71,9 +72,13 @@ public:
     /// Marches R G B A, for Mode dvr or mip, in place of samples. False when cancelled.
     bool march_picture(Mode mode, int rays, const RenderControl& control = {});
 
+    /// Samples (or rays of a march) per pixel of the picture.
+    int samples() const { return samples_; }
     /// The picture on its device, with what was asked for so far; valid until the next call. Null where it is kept on the host: on several
     /// devices, or when it takes more than half of what the device has left.
     Film* film();
+    /// Where film() is null: what a filter made of frame(), for frame() and picture() until the samples change.
+    void set_filtered(Frame filtered);
     /// The picture on the host: one download; what a filter made of the film where one ran. Over `background`, with background.R/G/B,
     /// unless that is transparent. `beauty_alone`: without features, variances and the noisy picture.
     Frame frame(const Background& background = {}, bool beauty_alone = false);
@@ -130,11 +135,12 @@ private:
     bool march(March kind, int rays, bool lit, const RenderControl& control);
     std::vector<Scheduler::ChunkSize> march_chunk_sizes() const;
     void resolve();
+    void drop_filtered();
     void see_environment(Worker& w, std::uint32_t first, std::uint32_t count, Buffer& out);
 };
 
-/// Brings a session to a scene of which it has set all but spp, mode and features: features when wanted, then samples or a march. Throws
-/// Error{interrupted} when cancelled before one pass was done.
+/// Brings a session to a scene of which it has set all but spp, mode and features: features when wanted, then samples (anew, or more of them:
+/// RenderControl::go_on) or a march. Throws Error{interrupted} when cancelled before one pass was done.
 void take(RenderSession& session, const Scene& scene, const RenderControl& control = {});
 /// The same, and the frame over the scene's background. `frame.attributes` gets "clvr.spp" (samples reached).
 Frame render(RenderSession& session, const Scene& scene, const RenderControl& control = {});

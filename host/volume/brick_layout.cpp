@@ -1,6 +1,6 @@
 #include "host/volume/brick_layout.hpp"
-#include "host/volume/slabs.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -148,10 +148,10 @@ void pack_bricks(const Voxels& v, const BrickLayout& layout, const std::vector<s
         for (last = first + 1; last < bricks.size() && begin(last) == end(last - 1) && end(last) - begin(first) <= piece_bytes;) ++last;
         const std::size_t from = begin(first), size = end(last - 1) - from;
         piece.resize(size);
-        for_slabs(static_cast<int>(last - first), [&](int low, int high) {
+        for_parts(last - first, [&](std::size_t, std::size_t low, std::size_t high) {
             with_voxel_type(v.type, [&](auto sample) {
                 using T = decltype(sample);
-                for (std::size_t i = first + static_cast<std::size_t>(low); i < first + static_cast<std::size_t>(high); ++i)
+                for (std::size_t i = first + low; i < first + high; ++i)
                     pack_brick(v, layout, bricks[i], reinterpret_cast<T*>(piece.data() + begin(i) - from));
             });
         });

@@ -1,5 +1,5 @@
 #include "host/volume/majorant_grid.hpp"
-#include "host/volume/slabs.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 
@@ -62,9 +62,8 @@ MajorantGrid majorant_grid(const Voxels& v) {
     grid.cells = cells_of(v.dims, grid.log2_edge);
     grid.range.resize(2 * grid.count());
     with_voxel_type(v.type, [&](auto sample) {
-        for_slabs(grid.cells[2], [&](int first, int last) {
-            for (int z = first; z < last; ++z) layer_ranges<decltype(sample)>(v, grid, z);
-        });
+        for_each_index(static_cast<std::size_t>(grid.cells[2]),
+                       [&](std::size_t z) { layer_ranges<decltype(sample)>(v, grid, static_cast<int>(z)); });
     });
     return grid;
 }

@@ -1,9 +1,14 @@
 #include "host/volume/value_statistics.hpp"
+#include "host/volume/stored_counts.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <mutex>
 #include <numeric>
+#include <type_traits>
 
 namespace clvr {
 
@@ -11,37 +16,56 @@ namespace {
 
 constexpr std::size_t float_bins = 65536;
 
-/// Calls f(values, count, border) on runs of voxels along x that lie wholly inside or wholly outside of the border shell.
-template <class T, class F>
-void for_each_run(const Voxels& v, F&& f) {
-    const std::size_t n[3] = {std::size_t(v.dims[0]), std::size_t(v.dims[1]), std::size_t(v.dims[2])};
-    std::size_t shell[3];
-    for (int axis = 0; axis < 3; ++axis) shell[axis] = std::min(std::max<std::size_t>(n[axis] / 32, 1), (n[axis] + 1) / 2);
-    const T* row = v.data<T>();
-    for (std::size_t z = 0; z < n[2]; ++z)
-        for (std::size_t y = 0; y < n[1]; ++y, row += n[0]) {
-            const bool inside = z >= shell[2] && z + shell[2] < n[2] && y >= shell[1] && y + shell[1] < n[1] && 2 * shell[0] < n[0];
-            const std::size_t begin = inside ? shell[0] : n[0], end = inside ? n[0] - shell[0] : n[0];
-            f(row, begin, true);
-            f(row + begin, end - begin, false);
-            f(row + end, n[0] - end, true);
-        }
-}
-
-template <class T>
-ValueCounts count(const Voxels& v, double low, double high) {
+/// Equal bins from low to high, all empty.
+ValueCounts empty_counts(double low, double high, std::size_t bins) {
     ValueCounts counts;
-    const std::size_t bins = std::is_integral_v<T> ? static_cast<std::size_t>(high - low) + 1 : high > low ? float_bins : 1;
     counts.low = low;
     counts.width = bins > 1 ? (high - low) / static_cast<double>(bins - 1) : 1;
     counts.all.resize(bins);
     counts.border.resize(bins);
-    const double last = static_cast<double>(bins - 1), scale = bins > 1 ? last / (high - low) : 0;
-    for_each_run<T>(v, [&](const T* values, std::size_t n, bool border) {
-        auto& to = border ? counts.border : counts.all;
-        for (std::size_t i = 0; i < n; ++i) ++to[static_cast<std::size_t>(std::clamp((double(values[i]) - low) * scale + 0.5, 0.0, last))];
+    return counts;
+}
+
+/// The bin of a value; those beyond the ends are in the end bins.
+class BinOf {
+public:
+    BinOf(double low, double high, std::size_t bins)
+        : low_(low), last_(static_cast<double>(bins - 1)), scale_(bins > 1 ? last_ / (high - low) : 0) {}
+    std::size_t operator()(double value) const { return static_cast<std::size_t>(std::clamp((value - low_) * scale_ + 0.5, 0.0, last_)); }
+
+private:
+    double low_, last_, scale_;
+};
+
+/// A bin a value.
+ValueCounts count_integers(const StoredCounts& stored, double least, double low, double high) {
+    ValueCounts counts = empty_counts(low, high, static_cast<std::size_t>(high - low) + 1);
+    const BinOf bin(low, high, counts.bins());
+    for (std::size_t i = 0; i < stored.all.size(); ++i) {
+        if (stored.all[i] == 0) continue;
+        const std::size_t to = bin(least + static_cast<double>(i));
+        counts.all[to] += stored.all[i];
+        counts.border[to] += stored.border[i];
+    }
+    return counts;
+}
+
+ValueCounts count_floats(const Voxels& v, double low, double high) {
+    ValueCounts counts = empty_counts(low, high, high > low ? float_bins : 1);
+    const BinOf bin(low, high, counts.bins());
+    std::mutex merging;
+    for_parts(static_cast<std::size_t>(v.dims[2]), [&](std::size_t, std::size_t first, std::size_t last) {
+        std::vector<std::uint64_t> all(counts.bins()), border(counts.bins());
+        for_each_run<float>(v, first, last, [&](const float* values, std::size_t n, bool is_border) {
+            auto& to = is_border ? border : all;
+            for (std::size_t i = 0; i < n; ++i) ++to[bin(double{values[i]})];
+        });
+        const std::lock_guard lock(merging);
+        for (std::size_t b = 0; b < counts.bins(); ++b) {
+            counts.all[b] += all[b] + border[b];
+            counts.border[b] += border[b];
+        }
     });
-    for (std::size_t i = 0; i < bins; ++i) counts.all[i] += counts.border[i];
     return counts;
 }
 
@@ -105,24 +129,29 @@ std::pair<int, int> first_peak(const Coarse& h, int from) {
 
 } // namespace
 
-ValueCounts value_counts(const Voxels& v, double low, double high) {
+ValueCounts value_counts(const Voxels& v, const Histogram& h) {
     return with_voxel_type(v.type, [&](auto t) {
         using T = decltype(t);
-        ValueCounts counts = count<T>(v, low, high);
-        for (int zoom = 0; std::is_floating_point_v<T> && zoom < 8; ++zoom) {
-            // Outliers: beyond the robust ends the range is mostly empty. One bin that holds nearly everything hides structure, too.
-            const auto [first, last] = robust_ends(counts.all);
-            const std::size_t most = mode(counts.all);
-            const bool one_bin = counts.all[most] * 1e4 > (1e4 - 1) * static_cast<double>(v.count());
-            const std::size_t from = one_bin ? most : first, to = one_bin ? most : last;
-            if ((to - from + 1) * 4 > counts.bins()) break;
-            const double finer_low = std::max(low, counts.value(double(from) - 0.5)),
-                         finer_high = std::min(high, counts.value(double(to) + 0.5));
-            if (!(finer_high - finer_low > 1e-6 * std::max(std::fabs(finer_low), std::fabs(finer_high))))
-                break; // float itself has no finer values
-            counts = count<T>(v, finer_low, finer_high);
+        if constexpr (std::is_integral_v<T>) {
+            const bool counted = !h.stored.all.empty();
+            return count_integers(counted ? h.stored : stored_counts(v), double{std::numeric_limits<T>::min()}, h.low, h.high);
+        } else {
+            ValueCounts counts = count_floats(v, h.low, h.high);
+            for (int zoom = 0; zoom < 8; ++zoom) {
+                // Outliers: beyond the robust ends the range is mostly empty. One bin that holds nearly everything hides structure, too.
+                const auto [first, last] = robust_ends(counts.all);
+                const std::size_t most = mode(counts.all);
+                const bool one_bin = counts.all[most] * 1e4 > (1e4 - 1) * static_cast<double>(v.count());
+                const std::size_t from = one_bin ? most : first, to = one_bin ? most : last;
+                if ((to - from + 1) * 4 > counts.bins()) break;
+                const double finer_low = std::max(h.low, counts.value(double(from) - 0.5)),
+                             finer_high = std::min(h.high, counts.value(double(to) + 0.5));
+                if (!(finer_high - finer_low > 1e-6 * std::max(std::fabs(finer_low), std::fabs(finer_high))))
+                    break; // float itself has no finer values
+                counts = count_floats(v, finer_low, finer_high);
+            }
+            return counts;
         }
-        return counts;
     });
 }
 

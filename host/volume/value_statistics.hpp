@@ -15,7 +15,8 @@ struct ValueCounts {
     double value(double bin) const { return low + width * bin; }
     std::size_t bins() const { return all.size(); }
 };
-ValueCounts value_counts(const Voxels& v, double low, double high);
+/// `h`: of these voxels; of an integer type nothing is counted anew.
+ValueCounts value_counts(const Voxels& v, const Histogram& h);
 
 /// One side of the background value: structure lies from `threshold` to `top`, both in bins' stored values; `top` is on the other side of
 /// the background when `sign` is -1.

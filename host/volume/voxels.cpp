@@ -1,5 +1,6 @@
 #include "host/volume/voxels.hpp"
-#include "host/volume/slabs.hpp"
+#include "host/volume/stored_counts.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -42,19 +43,13 @@ struct Binning {
     std::size_t operator()(double value) const { return std::min(static_cast<std::size_t>((value - low) * scale), histogram_bins - 1); }
 };
 
-/// Counts each of the 2^8 or 2^16 values, in one pass.
+std::size_t slices_of(const Voxels& v) { return static_cast<std::size_t>(v.dims[2]); }
+
 template <class T>
 void count_values(const Voxels& v, Histogram& h) {
     constexpr int least = std::numeric_limits<T>::min(), greatest = std::numeric_limits<T>::max();
-    std::vector<std::uint64_t> counts(greatest - least + 1);
-    const std::size_t slab = static_cast<std::size_t>(v.dims[0]) * v.dims[1];
-    std::mutex merging;
-    for_slabs(v.dims[2], [&](int first, int last) {
-        std::vector<std::uint64_t> part(counts.size());
-        for (const T *p = v.data<T>() + first * slab, *const end = v.data<T>() + last * slab; p != end; ++p) ++part[*p - least];
-        const std::lock_guard lock(merging);
-        for (std::size_t i = 0; i < counts.size(); ++i) counts[i] += part[i];
-    });
+    h.stored = stored_counts(v);
+    const std::vector<std::uint64_t>& counts = h.stored.all;
     const auto used = [](std::uint64_t n) { return n > 0; };
     h.low = least + (std::find_if(counts.begin(), counts.end(), used) - counts.begin());
     h.high = greatest - (std::find_if(counts.rbegin(), counts.rend(), used) - counts.rbegin());
@@ -68,7 +63,7 @@ void count_floats(const Voxels& v, Histogram& h) {
     const std::size_t slab = static_cast<std::size_t>(v.dims[0]) * v.dims[1];
     std::mutex merging;
     float low = voxels[0], high = voxels[0];
-    for_slabs(v.dims[2], [&](int first, int last) {
+    for_parts(slices_of(v), [&](std::size_t, std::size_t first, std::size_t last) {
         const auto [least, greatest] = std::minmax_element(voxels + first * slab, voxels + last * slab);
         const std::lock_guard lock(merging);
         low = std::min(low, *least);
@@ -77,7 +72,7 @@ void count_floats(const Voxels& v, Histogram& h) {
     h.low = low;
     h.high = high;
     const Binning bin(h.low, h.high);
-    for_slabs(v.dims[2], [&](int first, int last) {
+    for_parts(slices_of(v), [&](std::size_t, std::size_t first, std::size_t last) {
         std::vector<std::uint64_t> part(histogram_bins);
         for (const float *p = voxels + first * slab, *const end = voxels + last * slab; p != end; ++p) ++part[bin(double{*p})];
         const std::lock_guard lock(merging);

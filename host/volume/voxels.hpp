@@ -62,10 +62,17 @@ struct Voxels {
     }
 };
 
+/// Voxels of each stored value of an integer type, from the type's least value on: in all of the volume, and in the shell at its border
+/// (stored_counts.hpp). Empty for f32.
+struct StoredCounts {
+    std::vector<std::uint64_t> all, border;
+};
+
 /// Least and greatest stored value, and a histogram of 1024 equal bins over [low, high] in stored values (the last bin closed).
 struct Histogram {
     double low = 0, high = 0;
     std::vector<std::uint64_t> bins;
+    StoredCounts stored; ///< what it was made of, for value_counts()
     std::uint64_t total() const {
         std::uint64_t n = 0;
         for (auto b : bins) n += b;

@@ -4,6 +4,7 @@
 #include "runtime/error.hpp"
 
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace clvr {
@@ -15,13 +16,17 @@ std::string status_name(cl_int status);
 /// ErrorKind::device_memory, the rest ErrorKind::device. `where` says what was attempted and on which device.
 Error translated(const cl::Error& error, const std::string& where);
 
-/// Runs `call`, which may use the C++ bindings; a cl::Error leaves it as clvr::Error.
-template <class Call>
-auto cl_check(const std::string& where, Call&& call) -> decltype(std::forward<Call>(call)()) {
+/// Runs `call`, which may use the C++ bindings; a cl::Error leaves it as clvr::Error. `where` is a text, or a function that makes it:
+/// called only when something failed, as a launch is too short to write sentences beside it.
+template <class Where, class Call>
+auto cl_check(Where&& where, Call&& call) -> decltype(std::forward<Call>(call)()) {
     try {
         return std::forward<Call>(call)();
     } catch (const cl::Error& error) {
-        throw translated(error, where);
+        if constexpr (std::is_invocable_v<Where>)
+            throw translated(error, where());
+        else
+            throw translated(error, where);
     }
 }
 

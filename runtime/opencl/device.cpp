@@ -5,6 +5,7 @@
 #include "runtime/opencl/account.hpp"
 #include "runtime/opencl/fault.hpp"
 #include "runtime/opencl/program.hpp"
+#include "runtime/opencl/programs.hpp"
 #include "runtime/system/size.hpp"
 #include "runtime/tune/tuning.hpp"
 
@@ -12,6 +13,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <tuple>
 
 namespace clvr {
@@ -38,21 +40,28 @@ struct Device::State {
     std::shared_ptr<Account> account;
     std::size_t max_alloc_bytes = 0, max_memory_bytes = 0;
     Tunables tunables;
-    std::map<std::pair<std::string, Defines>, cl::Program> programs;
     std::deque<Pending> pending;
     Profile profile;
-    std::unique_ptr<Faults> faults; // null: none are put in
+    std::unique_ptr<Faults> faults;   // null: none are put in
+    std::optional<Programs> programs; // the last member: its thread uses those above
+
+    cl::Program build(const Programs::Key& key) const {
+        Defines all = key.second;
+        if (faults && faults->breaks_build(key.first)) all["__kernel"] = "broken_by_CLVR_FAULT";
+        return build_program(context, facts, key.first + ".cl", all);
+    }
 
     /// The driver's calls, through the faults.
     template <class Call>
-    void drive(const std::string& what, const char* name, Call&& call) {
-        cl_check(doing(what), [&] {
-            if (faults) faults->call(name);
-            call();
-        });
+    void drive(const char* what, const char* name, Call&& call) {
+        cl_check([&] { return doing(what); },
+                 [&] {
+                     if (faults) faults->call(name);
+                     call();
+                 });
     }
 
-    std::string doing(const std::string& what) const { return fmt::format("{} on {}", what, facts.name); }
+    std::string doing(std::string_view what) const { return fmt::format("{} on {}", what, facts.name); }
 
     /// Notes a command for the profile.
     void track(const cl::Event& event, const std::string& label, Work work) {
@@ -63,13 +72,14 @@ struct Device::State {
     /// Waits for the first `count` pending commands (the queue is in order) and books their times.
     void resolve(std::size_t count) {
         if (count == 0) return;
-        cl_check(doing(pending[count - 1].label), [&] { pending[count - 1].event.wait(); });
+        cl_check([&] { return doing(pending[count - 1].label); }, [&] { pending[count - 1].event.wait(); });
         for (; count > 0; --count) {
             const Pending& first = pending.front();
-            const auto [start, end] = cl_check(doing("timing " + first.label), [&] {
-                return std::pair(first.event.getProfilingInfo<CL_PROFILING_COMMAND_START>(),
-                                 first.event.getProfilingInfo<CL_PROFILING_COMMAND_END>());
-            });
+            const auto [start, end] = cl_check([&] { return doing("timing " + first.label); },
+                                               [&] {
+                                                   return std::pair(first.event.getProfilingInfo<CL_PROFILING_COMMAND_START>(),
+                                                                    first.event.getProfilingInfo<CL_PROFILING_COMMAND_END>());
+                                               });
             profile.add(first.label, quirks::milliseconds_though_stamps_run_backwards(start, end), first.work.bytes, first.work.flops);
             pending.pop_front();
         }
@@ -100,6 +110,7 @@ Device Device::open_untested(const DeviceFacts& facts) {
         state.account = account_of(parent ? parent : facts.handle());
         state.faults = Faults::of(facts);
     });
+    state.programs.emplace([&state](const Programs::Key& key) { return state.build(key); });
     return device;
 }
 
@@ -186,18 +197,14 @@ void Device::fill(Buffer& to, unsigned char value) {
     state_->track(event, "fill", {static_cast<double>(to.bytes()), 0});
 }
 
+void Device::prepare(const std::string& stage, const Defines& defines) { state_->programs->prepare({stage, defines}); }
+
 Kernel Device::kernel(const std::string& stage, const Defines& defines) {
-    const auto key = std::pair(stage, defines);
-    auto found = state_->programs.find(key);
-    if (found == state_->programs.end()) {
-        Defines all = defines;
-        if (state_->faults && state_->faults->breaks_build(stage)) all["__kernel"] = "broken_by_CLVR_FAULT";
-        found = state_->programs.emplace(key, build_program(state_->context, state_->facts, stage + ".cl", all)).first;
-    }
+    const cl::Program program = state_->programs->get({stage, defines});
     Kernel kernel;
     kernel.label_ = stage.substr(stage.rfind('/') + 1);
     cl_check(state_->doing("entry point " + kernel.label_), [&] {
-        kernel.handle_ = cl::Kernel(found->second, kernel.label_.c_str());
+        kernel.handle_ = cl::Kernel(program, kernel.label_.c_str());
         kernel.max_local_items_ = kernel.handle_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(state_->facts.handle);
         if (state_->facts.type == DeviceType::cpu) kernel.max_local_items_ = std::min(kernel.max_local_items_, most_on_a_processor);
     });
@@ -205,7 +212,8 @@ Kernel Device::kernel(const std::string& stage, const Defines& defines) {
 }
 
 void Device::set_arg_bytes(Kernel& k, cl_uint i, std::size_t bytes, const void* value) {
-    cl_check(fmt::format("argument {} ({} bytes) of kernel {}", i, bytes, k.label_), [&] { k.handle_.setArg(i, bytes, value); });
+    cl_check([&] { return fmt::format("argument {} ({} bytes) of kernel {}", i, bytes, k.label_); },
+             [&] { k.handle_.setArg(i, bytes, value); });
 }
 
 void Device::enqueue(Kernel& k, Range global, Range local, Work work) {
@@ -220,10 +228,12 @@ void Device::enqueue(Kernel& k, Range global, Range local, Work work) {
                     state_->doing(k.label_));
     const cl::NDRange rounded(rounded_up(global.x, local.x), rounded_up(global.y, local.y), rounded_up(global.z, local.z));
     cl::Event event;
-    cl_check(state_->doing(k.label_), [&] {
-        if (state_->faults) state_->faults->launch(k.label_);
-        state_->queue.enqueueNDRangeKernel(k.handle_, cl::NullRange, rounded, cl::NDRange(local.x, local.y, local.z), nullptr, &event);
-    });
+    cl_check([&] { return state_->doing(k.label_); },
+             [&] {
+                 if (state_->faults) state_->faults->launch(k.label_);
+                 state_->queue.enqueueNDRangeKernel(k.handle_, cl::NullRange, rounded, cl::NDRange(local.x, local.y, local.z), nullptr,
+                                                    &event);
+             });
     state_->track(event, k.label_, work);
 }
 

@@ -137,6 +137,9 @@ public:
     /// Built on first use with `defines`, then kept in process and on disk (there by the driver where it does so).
     /// A build failure throws Error{device} whose text holds the compiler's log with file and line.
     Kernel kernel(const std::string& stage, const Defines& defines = {});
+    /// Has the program of an entry point built on a thread of its own, for kernel() to find. On PoCL each takes about 35 ms of one core
+    /// even when it is in the driver's cache.
+    void prepare(const std::string& stage, const Defines& defines = {});
 
     /// Enqueues a kernel over `global` (rounded up to `local`); arguments are Buffer, BufferList (an argument each), LocalMemory or
     /// trivially copyable values, in order.

@@ -200,7 +200,7 @@ TEST(ValueCountsTest, TheBorderIsAShellOfA32ndPart) {
     for (int z = 1; z < 2; ++z)
         for (int y = 1; y < 4; ++y)
             for (int x = 2; x < 62; ++x) v.bytes[static_cast<std::size_t>((z * 5 + y) * 64 + x)] = 3;
-    const ValueCounts counts = value_counts(v, 1, 3);
+    const ValueCounts counts = value_counts(v, stored_histogram(v));
     EXPECT_EQ(counts.all, (std::vector<std::uint64_t>{780, 0, 180}));
     EXPECT_EQ(counts.border, (std::vector<std::uint64_t>{780, 0, 0}));
     EXPECT_EQ(counts.value(2), 3);

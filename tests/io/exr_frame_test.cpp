@@ -5,12 +5,14 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
 #include <ImfTiledOutputFile.h>
 #include <gmock/gmock.h>
 #include <half.h>
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -105,6 +107,65 @@ TEST(ExrFrameTest, ReadsHalfUintTilesAndOffsetWindows) {
             EXPECT_EQ(frame.at("id")[i], static_cast<float>(i));
         }
         EXPECT_EQ(frame.attributes, (std::map<std::string, std::string>{{"owner", "somebody"}}));
+    }
+}
+
+/// Lines of 1 and of 16 a block, packed or not, of all types, not from 0; one more channel than is asked for.
+TEST(ExrFrameTest, ReadsLinesThatOpenExrPacked) {
+    const Folder folder;
+    const Imath::Box2i window({-2, 3}, {18, 40}); // 21 x 38: the last block is a short one
+    const std::size_t pixels = 21 * 38;
+    std::vector<float> r(pixels);
+    std::vector<half> g(pixels);
+    std::vector<unsigned> id(pixels);
+    for (std::size_t i = 0; i < pixels; ++i)
+        r[i] = std::sin(static_cast<float>(i)), g[i] = half(i < 200 ? 0.0f : 0.01f * static_cast<float>(i)),
+        id[i] = static_cast<unsigned>(i) << 20;
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::ZIPS_COMPRESSION, Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION})
+        for (const Imf::LineOrder order : {Imf::INCREASING_Y, Imf::DECREASING_Y}) {
+            Imf::Header header(window, window);
+            header.compression() = compression;
+            header.lineOrder() = order;
+            header.channels().insert("R", Imf::Channel(Imf::FLOAT));
+            header.channels().insert("G", Imf::Channel(Imf::HALF));
+            header.channels().insert("id", Imf::Channel(Imf::UINT));
+            Imf::FrameBuffer buffer;
+            buffer.insert("R", Imf::Slice::Make(Imf::FLOAT, r.data(), window));
+            buffer.insert("G", Imf::Slice::Make(Imf::HALF, g.data(), window));
+            buffer.insert("id", Imf::Slice::Make(Imf::UINT, id.data(), window));
+            {
+                Imf::OutputFile file((folder / "a.exr").c_str(), header);
+                file.setFrameBuffer(buffer);
+                file.writePixels(38);
+            }
+            const Frame frame = read_exr(folder / "a.exr");
+            ASSERT_EQ(frame.pixels(), pixels);
+            for (std::size_t i = 0; i < pixels; ++i) {
+                ASSERT_EQ(frame.at("R")[i], r[i]);
+                ASSERT_EQ(frame.at("G")[i], static_cast<float>(g[i]));
+                ASSERT_EQ(frame.at("id")[i], static_cast<float>(id[i]));
+            }
+        }
+}
+
+TEST(ExrFrameTest, OpenExrReadsWhatIsWritten) {
+    const Folder folder;
+    const std::string long_name = "a.channel.with.a.name.of.more.than.31.characters";
+    Frame frame = test::noise(33, 50, {"A", "B", "G", "R", long_name});
+    for (std::size_t i = 0; i < 900; ++i) frame.channel("B")[i] = 0; // some blocks pack, those of noise do not
+    frame.x = -7, frame.y = 11;
+    write_exr(frame, folder / "a.exr");
+    Imf::InputFile file((folder / "a.exr").c_str());
+    const Imath::Box2i window = file.header().dataWindow();
+    EXPECT_EQ(window, Imath::Box2i({-7, 11}, {25, 60}));
+    EXPECT_TRUE(file.isComplete());
+    for (const auto& [name, values] : frame.channels) {
+        std::vector<float> read(frame.pixels());
+        Imf::FrameBuffer buffer;
+        buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, read.data(), window));
+        file.setFrameBuffer(buffer);
+        file.readPixels(window.min.y, window.max.y);
+        EXPECT_EQ(read, values) << name;
     }
 }
 

@@ -1,6 +1,5 @@
 #include "tools/bench/live.hpp"
-#include "host/denoise/channels.hpp"
-#include "host/denoise/denoiser.hpp"
+#include "host/render/pipeline.hpp"
 #include "tools/bench/statistics.hpp"
 
 #include <fmt/format.h>
@@ -48,19 +47,16 @@ LiveRow measure_frames(Device& device, const std::string& what, const Scene& sce
 std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, const Scene& first, const Model& model, double seconds) {
     Scene scene = first;
     RenderSession session({device}, volume, scene);
-    Denoiser denoiser(device, model);
-    RenderControl control;
-    control.light = reads_light(model);
-    const auto finish = [&] {
-        if (Film* const film = session.film()) denoiser.denoise(*film);
+    Pipeline pipeline(model);
+    const auto show = [&](int rays, bool anew) {
+        Scene wanted = scene;
+        wanted.spp = 1, wanted.feature_samples = rays;
+        RenderControl control;
+        control.light = false; // the model says
+        control.draft = rays == 1;
+        control.go_on = !anew;
+        pipeline.run(session, wanted, control);
         session.picture(scene.background, {scene.tonemap, scene.exposure}, true);
-    };
-    const auto moved = [&] {
-        control.draft = true;
-        session.march_features(1, control);
-        control.draft = false;
-        session.accumulate(1, control);
-        finish();
     };
     std::vector<LiveRow> rows;
     for (const auto& [width, height] : {std::pair{240, 168}, {320, 320}, {640, 640}}) {
@@ -69,7 +65,7 @@ std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, 
         rows.push_back(measure_frames(device, "moving", scene, seconds, [&] {
             scene.camera.azimuth += 3;
             session.set_view(scene);
-            moved();
+            show(1, true);
         }));
     }
     scene.width = scene.height = 320;
@@ -78,21 +74,17 @@ std::vector<LiveRow> measure_live(Device& device, const PreparedVolume& volume, 
     rows.push_back(measure_frames(device, "transfer function", scene, seconds, [&, step = 0]() mutable {
         scene.transfer->points.back().color[0] = ++step % 2 ? 0.8 : 0.9;
         session.set_appearance(scene);
-        moved();
+        show(1, true);
     }));
     scene.width = scene.height = 640;
     session.set_size(640, 640);
     rows.push_back(measure_frames(device, "first of settled", scene, seconds, [&] {
         scene.camera.azimuth += 3;
         session.set_view(scene);
-        session.march_features(4, control);
-        session.accumulate(1, control);
-        finish();
+        show(4, true);
     }));
     rows.push_back(measure_frames(device, "settled", scene, seconds, [&] {
-        session.march_features(4, control);
-        session.accumulate(1, control);
-        finish();
+        show(4, false);
     }));
     return rows;
 }

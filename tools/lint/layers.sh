@@ -28,7 +28,7 @@ only host/volume runtime/ host/volume/ kernels/shared/
 only host/appearance runtime/ host/volume/ host/frame/ host/appearance/ kernels/shared/
 only host/phantom runtime/ host/volume/ host/phantom/ kernels/shared/
 only host/frame runtime/ host/frame/
-only host/render runtime/ host/volume/ host/appearance/ host/frame/ host/render/ kernels/shared/
+only host/render runtime/ host/volume/ host/appearance/ host/frame/ host/denoise/ host/render/ kernels/shared/
 only host/denoise runtime/ host/frame/ host/denoise/ kernels/shared/
 only host/io runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/denoise/ host/io/ kernels/shared/
 only host/pairs runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/io/ host/pairs/
@@ -48,7 +48,8 @@ only kernels/selftest shared/ lib/
 only kernels/probe shared/ lib/ trust_operations.h
 
 nowhere_but 'runtime/drivers/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'
-nowhere_but 'host/io/[a-z0-9_/]*\.cpp' '#\s*include\s*[<"](ImfF?|png\.h|zlib\.h|bzlib|lz4|turbojpeg|hdf5|pugixml|tiffio|gdcm)'
+nowhere_but 'host/io/[a-z0-9_/]*\.cpp' '#\s*include\s*[<"](ImfF?|png\.h|zlib\.h|libdeflate|bzlib|lz4|turbojpeg|hdf5|pugixml|tiffio|gdcm)'
+nowhere_but 'runtime/system/parallel\.cpp' '#\s*include\s*<tbb'
 nowhere_but 'host/dataset/download\.cpp' '#\s*include\s*<curl'
 nowhere_but 'host/train/matrix_layers\.cpp' '#\s*include\s*<clblast'
 complain "clocks that jump have no place in the product: use steady_clock" "$(grep -rnE 'system_clock|high_resolution_clock|gettimeofday' runtime host || true)"

@@ -1,9 +1,11 @@
 #include "host/io/file_roles.hpp"
 #include "host/io/picture/exr_library.hpp"
+#include "host/io/picture/exr_lines.hpp"
 #include "host/io/picture/exr_names.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
 #include "runtime/system/atomic_file.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
@@ -19,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 
 namespace clvr {
@@ -211,6 +214,51 @@ void set_windows(const Imf::MultiPartInputFile& file, const std::vector<Part>& p
     frame.pixel_aspect = first.pixelAspectRatio();
 }
 
+/// How many lines a block has of a part that read_lines() takes: lines at full size, not compressed or by ZIP or ZIPS; else 0.
+int block_lines(const Imf::Header& header) {
+    if (header.hasType() && header.type() != Imf::SCANLINEIMAGE) return 0;
+    if (header.hasTileDescription()) return 0;
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        if (c.channel().xSampling != 1 || c.channel().ySampling != 1) return 0;
+    const Imf::Compression compression = header.compression();
+    if (compression == Imf::ZIP_COMPRESSION) return exr_block_lines;
+    return compression == Imf::ZIPS_COMPRESSION || compression == Imf::NO_COMPRESSION ? 1 : 0;
+}
+
+/// Reads the channels of a part into the frame, whose window is `all`.
+void read_part(Imf::InputPart& part, const ChannelNames& names, const Imath::Box2i& all, Frame& frame) {
+    const Imf::Header& header = part.header();
+    const Imath::Box2i window = header.dataWindow();
+    std::map<std::string, float*> planes; // by their names, from the first pixel of the frame
+    for (const auto& [theirs, ours] : names) frame.channels[ours];
+    for_each_index(names.size(), [&](std::size_t c) { frame.channels.at(names[c].second).resize(frame.pixels()); });
+    for (const auto& [theirs, ours] : names) planes[theirs] = frame.channel(ours).data();
+    if (const int lines = block_lines(header)) {
+        StoredLines stored{
+            window.max.x - window.min.x + 1, window.max.y - window.min.y + 1, lines, static_cast<std::size_t>(frame.width), {}};
+        const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(window.min.y - frame.y) * frame.width + window.min.x - frame.x;
+        for (auto c = header.channels().begin(); c != header.channels().end(); ++c) {
+            const Imf::PixelType type = c.channel().type;
+            const auto plane = planes.find(c.name());
+            stored.channels.push_back({type == Imf::HALF    ? StoredChannel::Type::half
+                                       : type == Imf::FLOAT ? StoredChannel::Type::float32
+                                                            : StoredChannel::Type::uint32,
+                                       plane == planes.end() ? nullptr : plane->second + first});
+        }
+        read_lines(stored, [&](int line) {
+            const char* bytes = nullptr;
+            int size = 0;
+            part.rawPixelData(window.min.y + line, bytes, size);
+            return std::string(bytes, static_cast<std::size_t>(size));
+        });
+        return;
+    }
+    Imf::FrameBuffer buffer;
+    for (const auto& [name, values] : planes) buffer.insert(name, plane(values, all, frame.y, frame.height));
+    part.setFrameBuffer(buffer);
+    part.readPixels(window.min.y, window.max.y);
+}
+
 Frame read_all(const std::string& path) {
     use_all_cores();
     check_attribute_sizes(path);
@@ -225,11 +273,7 @@ Frame read_all(const std::string& path) {
         check_header(header, chosen.names);
         if (!chosen.names.empty()) {
             probe_last_line(part, chosen.names);
-            Imf::FrameBuffer buffer;
-            for (const auto& [theirs, ours] : chosen.names)
-                buffer.insert(theirs, plane(frame.channel(ours).data(), all, frame.y, frame.height));
-            part.setFrameBuffer(buffer);
-            part.readPixels(header.dataWindow().min.y, header.dataWindow().max.y);
+            read_part(part, chosen.names, all, frame);
         }
         add_attributes(header, frame);
     }

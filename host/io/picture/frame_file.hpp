@@ -1,5 +1,6 @@
 // Frames to and from files.
 #pragma once
+#include "host/frame/display_pixels.hpp"
 #include "host/frame/tonemap.hpp"
 
 #include <string>
@@ -7,8 +8,8 @@
 
 namespace clvr {
 
-/// Scanline float32 ZIP OpenEXR with all channels, both windows and all attributes. Written beside, synced, renamed. Throws Error{input}
-/// when it cannot be written.
+/// Scanline float32 ZIP OpenEXR with all channels, both windows and all attributes, packed on all cores. Written beside, synced, renamed.
+/// Throws Error{input} when it cannot be written.
 void write_exr(const Frame& frame, const std::string& path);
 /// Reads any scanline or tiled, half or float (or uint) EXR, channels in any order; the data window becomes the frame. Parts are joined
 /// (exr_names.hpp); luminance and chroma become R G B, luminance alone too. Of several views the first, of mipmaps the largest. What is
@@ -20,11 +21,16 @@ Frame read_exr(const std::string& path);
 /// on. Throws Error{input, usage}.
 std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap);
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);
+/// The same of pixels that are there already.
+std::vector<unsigned char> encode_png(const DisplayPixels& pixels);
+void write_png(const DisplayPixels& pixels, const std::string& path);
 /// Any PNG as linear light 0..1 of its 8-bit sRGB (premultiplied; A where the file has an alpha). Throws Error{input}.
 Frame read_png(const std::string& path);
 
 /// The same as JPEG over black, quality 95, every colour at full size. Throws Error{input, usage}; also for more than 65500 pixels a side.
 void write_jpeg(const Frame& frame, const Tonemap& tonemap, const std::string& path);
+/// The same of pixels of three components.
+void write_jpeg(const DisplayPixels& pixels, const std::string& path);
 /// Any JPEG of grey or RGB as linear light 0..1 of its sRGB. Throws Error{input}.
 Frame read_jpeg(const std::string& path);
 

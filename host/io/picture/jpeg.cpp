@@ -21,21 +21,26 @@ Handle checked(tjhandle handle) {
     return {handle, tjDestroy};
 }
 
+void refuse_large(int width, int height, const std::string& path) {
+    if (width > largest_side || height > largest_side)
+        throw Error(ErrorKind::input,
+                    fmt::format("{} x {} pixels are too many for JPEG, which ends at {}; name a .png", width, height, largest_side), path);
+}
+
 } // namespace
 
 void write_jpeg(const Frame& frame, const Tonemap& tonemap, const std::string& path) {
     const Region shown = frame.shown();
-    if (shown.width > largest_side || shown.height > largest_side)
-        throw Error(
-            ErrorKind::input,
-            fmt::format("{} x {} pixels are too many for JPEG, which ends at {}; name a .png", shown.width, shown.height, largest_side),
-            path);
-    DisplayPixels pixels;
+    refuse_large(shown.width, shown.height, path); // before pixels of that size are made
     try {
-        pixels = display_pixels(frame, tonemap, false);
+        write_jpeg(display_pixels(frame, tonemap, false), path);
     } catch (const Error& e) {
         throw e.where().empty() ? Error(e.kind(), e.what(), path) : e;
     }
+}
+
+void write_jpeg(const DisplayPixels& pixels, const std::string& path) {
+    refuse_large(pixels.width, pixels.height, path);
     const Handle encoder = checked(tjInitCompress());
     unsigned char* bytes = nullptr;
     unsigned long size = 0;

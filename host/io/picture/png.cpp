@@ -10,8 +10,7 @@
 
 namespace clvr {
 
-std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap) {
-    const DisplayPixels pixels = display_pixels(frame, tonemap, true);
+std::vector<unsigned char> encode_png(const DisplayPixels& pixels) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     image.width = static_cast<png_uint_32>(pixels.width);
@@ -26,14 +25,19 @@ std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap
     return encoded;
 }
 
+std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap) { return encode_png(display_pixels(frame, tonemap, true)); }
+
+void write_png(const DisplayPixels& pixels, const std::string& path) {
+    const std::vector<unsigned char> encoded = encode_png(pixels);
+    write_atomically(path, encoded.data(), encoded.size());
+}
+
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path) {
-    std::vector<unsigned char> encoded;
     try {
-        encoded = encode_png(frame, tonemap);
+        write_png(display_pixels(frame, tonemap, true), path);
     } catch (const Error& e) {
         throw e.where().empty() ? Error(e.kind(), e.what(), path) : e;
     }
-    write_atomically(path, encoded.data(), encoded.size());
 }
 
 Frame read_png(const std::string& path) {

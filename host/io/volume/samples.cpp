@@ -1,4 +1,5 @@
 #include "host/io/volume/samples.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,6 +7,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace clvr {
@@ -54,7 +56,20 @@ decltype(auto) with_sample_type(SampleType t, F&& f) {
     throw std::logic_error("sample type");
 }
 
-constexpr std::size_t piece_samples = std::size_t{1} << 17;
+constexpr std::size_t piece_samples = std::size_t{1} << 17, piece_bytes = std::size_t{1} << 26;
+
+/// Has the system give the pages of memory, on all cores: 834 MB take one core 0.65 s, two 0.45 s. (Pages of 2 MiB took between 0.15 and 3
+/// s: the system gathers them first.)
+void take_pages([[maybe_unused]] unsigned char* memory, [[maybe_unused]] std::size_t bytes) {
+#ifdef MADV_POPULATE_WRITE
+    const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+    const auto up = [&](std::size_t at) { return (reinterpret_cast<std::uintptr_t>(memory) + at + page - 1) / page * page; };
+    for_each_index(bytes / piece_bytes, [&](std::size_t piece) {
+        const std::uintptr_t first = up(piece * piece_bytes), end = up((piece + 1) * piece_bytes) - page;
+        madvise(reinterpret_cast<void*>(first), end - first, MADV_POPULATE_WRITE); // in vain, without harm, on older systems
+    });
+#endif
+}
 
 } // namespace
 
@@ -206,6 +221,8 @@ void allocate_bytes(std::vector<unsigned char>& to, std::uint64_t bytes, const s
     if (bytes > machine)
         throw Error(ErrorKind::host_memory, fmt::format("its voxels need {} bytes, this machine has {} bytes of memory", bytes, machine),
                     path);
+    to.reserve(static_cast<std::size_t>(bytes));
+    take_pages(to.data(), to.capacity());
     to.resize(static_cast<std::size_t>(bytes));
 }
 
@@ -240,14 +257,16 @@ void read_samples(const ReadBytes& from, SampleType type, bool swapped, Voxels& 
     allocate(v);
     const std::size_t size = sample_bytes(type), count = v.count();
     const bool kept = is_kept(type);
-    std::vector<unsigned char> scratch(kept ? 0 : piece_samples * size);
-    for (std::size_t first = 0; first < count; first += piece_samples) {
-        const std::size_t n = std::min(piece_samples, count - first);
+    const std::size_t most = kept ? piece_bytes / size : piece_samples;
+    std::vector<unsigned char> scratch(kept ? 0 : most * size);
+    for (std::size_t first = 0; first < count; first += most) {
+        const std::size_t n = std::min(most, count - first);
         unsigned char* piece = kept ? v.bytes.data() + first * size : scratch.data();
         const std::size_t got = from(piece, n * size);
         if (got < n * size)
             bad_file(v.source, "expected {} bytes of voxels, found {}: the file is truncated", count * size, first * size + got);
-        if (swapped) swap_samples(piece, type, n);
+        if (swapped)
+            for_parts(n, [&](std::size_t, std::size_t low, std::size_t high) { swap_samples(piece + low * size, type, high - low); });
         if (!kept) store_samples(piece, type, n, v, first);
     }
 }

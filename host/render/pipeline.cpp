@@ -1,0 +1,28 @@
+#include "host/render/pipeline.hpp"
+#include "host/denoise/channels.hpp"
+
+namespace clvr {
+
+void Pipeline::run(RenderSession& session, const Scene& scene, RenderControl control) {
+    Scene wanted = scene;
+    wanted.features |= model_.has_value();
+    control.light |= model_ && reads_light(*model_);
+    take(session, wanted, control);
+    if (model_) denoise(session);
+}
+
+/// Where the session keeps the picture on a device, it is denoised there; else on the first device that can.
+void Pipeline::denoise(RenderSession& session) {
+    if (Film* const film = session.film()) return denoiser_on(film->device()).denoise(*film);
+    const Frame noisy = session.frame();
+    std::vector<Device> devices = session.devices();
+    session.set_filtered(on_first(devices, [&](Device& device) { return denoiser_on(device).denoise(noisy); }));
+}
+
+Denoiser& Pipeline::denoiser_on(Device& device) {
+    if (!denoiser_ || !is_same(*on_, device)) denoiser_.emplace(device, *model_);
+    on_ = device;
+    return *denoiser_;
+}
+
+} // namespace clvr
