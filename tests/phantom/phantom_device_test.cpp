@@ -1,6 +1,6 @@
 #include "host/phantom/phantom.hpp"
 #include "runtime/error.hpp"
-#include "tests/volume/computed_volume.hpp"
+#include "tests/phantom/computed_volume.hpp"
 
 #include <gtest/gtest.h>
 

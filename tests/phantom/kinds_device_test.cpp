@@ -1,6 +1,6 @@
 // The computed volumes of machine parts, bare bone, smooth media, rock and fibres.
 #include "host/phantom/parts.hpp"
-#include "tests/volume/computed_volume.hpp"
+#include "tests/phantom/computed_volume.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The computed bare skull: bones, teeth, ring artefacts.
 #include "host/phantom/parts.hpp"
-#include "tests/volume/computed_volume.hpp"
+#include "tests/phantom/computed_volume.hpp"
 
 #include <gtest/gtest.h>
 
