@@ -2,8 +2,8 @@
 #include "host/cli/first_word.hpp"
 #include "host/cli/program.hpp"
 #include "runtime/error.hpp"
-#include "runtime/nearest.hpp"
 #include "runtime/program_end.hpp"
+#include "runtime/system/nearest.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/sinks/stdout_color_sinks.h>

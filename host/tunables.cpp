@@ -1,8 +1,8 @@
 // The list of all tunables, which CMake puts into clvr_runtime: the runtime reads it and knows none of them by name.
 #include "host/denoise/tunables.hpp"
+#include "host/phantom/tunables.hpp"
 #include "host/render/tunables.hpp"
 #include "host/train/tunables.hpp"
-#include "host/volume/tunables.hpp"
 
 namespace clvr {
 

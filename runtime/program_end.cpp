@@ -1,10 +1,10 @@
 #include "runtime/program_end.hpp"
 
+#include "runtime/drivers/quirks.hpp"
 #include "runtime/error.hpp"
-#include "runtime/quirks.hpp"
-#include "runtime/signals.hpp"
-#include "runtime/standard_streams.hpp"
-#include "runtime/temporary.hpp"
+#include "runtime/system/signals.hpp"
+#include "runtime/system/standard_streams.hpp"
+#include "runtime/system/temporary.hpp"
 
 #include <csignal>
 #include <cstdio>
@@ -29,7 +29,7 @@ bool ended = false; // in the usual way
                                           ", most likely by the OpenCL driver; update it or choose another --device"
                                     : cache);
     remove_temporaries();
-    ::_exit(static_cast<int>(cache.empty() ? ErrorKind::device : ErrorKind::input));
+    ::_exit(exit_code(cache.empty() ? ErrorKind::device : ErrorKind::input));
 }
 
 void at_exit() {
@@ -51,6 +51,7 @@ int run_program(const std::string& name, int (*body)(int argc, char** argv), int
     program = name;
     process = ::getpid();
     prepare_standard_streams();
+    quirks::pocl_hides_devices_without_writable_cache(); // sets a variable: watch_signals starts the first thread
     watch_signals(name);
     std::atexit(at_exit);
     struct sigaction action {};
@@ -61,7 +62,7 @@ int run_program(const std::string& name, int (*body)(int argc, char** argv), int
     int code = 0;
     const auto fail = [&](const std::string& what, ErrorKind kind) {
         complain(name, what);
-        code = static_cast<int>(kind);
+        code = exit_code(kind);
     };
     const auto unprinted = [](const std::string& why) { return "standard output cannot be written: " + why; };
     try {
@@ -70,7 +71,7 @@ int run_program(const std::string& name, int (*body)(int argc, char** argv), int
         standard_output_problem(); // prints results first, in case both go to one terminal
         fail(error.line(), error.kind());
     } catch (const std::bad_alloc&) {
-        fail("out of memory; try something smaller", ErrorKind::memory);
+        fail("out of memory; try something smaller", ErrorKind::host_memory);
     } catch (const std::system_error& error) { // of {fmt}, which throws where it cannot print
         const std::string why = standard_output_problem();
         fail(why.empty() ? std::string("internal error: ") + error.what() : unprinted(error.code().message()),

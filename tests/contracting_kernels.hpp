@@ -1,6 +1,6 @@
 // The kernels as a compiler sees them that may contract a * b + c.
 #pragma once
-#include "runtime/embedded.hpp"
+#include "runtime/system/embedded.hpp"
 
 #include <map>
 #include <string>

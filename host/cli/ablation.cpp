@@ -7,9 +7,9 @@
 #include "host/cli/file_options.hpp"
 #include "host/cli/source_commit.hpp"
 #include "host/cli/stage_display.hpp"
-#include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
-#include "runtime/signals.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/signals.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "host/frame/metrics.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -54,7 +54,7 @@ Frame picture_of(const std::string& path, const Tonemap& tonemap) {
     for (const char* c : {"R", "G", "B"})
         if (!frame.has(c)) throw Error(ErrorKind::input, fmt::format("lacks channel {}", c), path);
     Frame mapped = tonemapped(frame, tonemap);
-    if (frame.has("opacity.A")) mapped.channels["opacity.A"] = frame.at("opacity.A");
+    if (frame.has(channel::opacity)) mapped.channels[channel::opacity] = frame.at(channel::opacity);
     return mapped;
 }
 

@@ -7,10 +7,10 @@
 #include "host/dataset/download.hpp"
 #include "host/dataset/manifest.hpp"
 #include "host/io/volume/volume_file.hpp"
-#include "host/volume/phantom.hpp"
+#include "host/phantom/phantom.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
-#include "runtime/signals.hpp"
+#include "runtime/system/json_text.hpp"
+#include "runtime/system/signals.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>

@@ -1,7 +1,8 @@
 #include "host/cli/device_options.hpp"
-#include "runtime/dealer.hpp"
-#include "runtime/select.hpp"
-#include "runtime/size.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/schedule/scheduler.hpp"
+#include "runtime/system/size.hpp"
+#include "runtime/trust/trust.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -25,7 +26,7 @@ std::vector<Device> open_devices(const DeviceOptions& o) {
     std::size_t refused = 0;
     for (const auto& facts : selection.devices) {
         try {
-            devices.push_back(Device::open(facts, o.relaxed));
+            devices.push_back(open_trusted(facts, o.relaxed));
         } catch (const Error& error) { // left out, as a device that fails later is, while there are others
             if (!is_device_failure(error) || ++refused == selection.devices.size()) throw;
             spdlog::warn("{} is left out: {}", display_name(facts), error.line().substr(0, error.line().find('\n')));

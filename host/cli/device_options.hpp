@@ -1,6 +1,6 @@
 // The options that choose and limit devices: the same for every command that computes.
 #pragma once
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <CLI/CLI.hpp>
 
@@ -11,7 +11,7 @@ namespace clvr {
 
 struct DeviceOptions {
     std::string selector, memory;
-    std::string task; ///< "render", "denoise" or "train": which remembered choice counts (runtime/remembered.hpp)
+    std::string task; ///< "render", "denoise" or "train": which remembered choice counts (runtime/choose/remembered.hpp)
     bool relaxed = false, profile = false;
 };
 

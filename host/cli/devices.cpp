@@ -1,13 +1,13 @@
 // `clvr devices`: what OpenCL offers here, and which device clvr will use and why.
 #include "host/cli/commands.hpp"
 
+#include "runtime/choose/select.hpp"
+#include "runtime/drivers/icd.hpp"
 #include "runtime/error.hpp"
-#include "runtime/icd.hpp"
-#include "runtime/json_text.hpp"
-#include "runtime/select.hpp"
-#include "runtime/size.hpp"
-#include "runtime/trust.hpp"
-#include "runtime/tuning.hpp"
+#include "runtime/system/json_text.hpp"
+#include "runtime/system/size.hpp"
+#include "runtime/trust/trust.hpp"
+#include "runtime/tune/tuning.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -23,7 +23,7 @@
 namespace clvr {
 namespace {
 
-/// Tasks that may have devices of their own (runtime/remembered.hpp), and what clvr does then.
+/// Tasks that may have devices of their own (runtime/choose/remembered.hpp), and what clvr does then.
 constexpr std::pair<const char*, const char*> tasks[] = {{"render", "renders"}, {"denoise", "denoises"}, {"train", "trains"}};
 
 /// All that the command shows.

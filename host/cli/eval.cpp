@@ -5,13 +5,13 @@
 #include "host/cli/progress_bar.hpp"
 #include "host/eval/evaluation_json.hpp"
 #include "host/eval/report.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>

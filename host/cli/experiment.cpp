@@ -9,12 +9,12 @@
 #include "host/dataset/download.hpp"
 #include "host/dataset/manifest.hpp"
 #include "host/experiment/experiment_estimate.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
-#include "runtime/signals.hpp"
-#include "runtime/size.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_text.hpp"
+#include "runtime/system/signals.hpp"
+#include "runtime/system/size.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "host/cli/first_word.hpp"
 #include "host/cli/open_volume.hpp"
 #include "runtime/error.hpp"
-#include "runtime/nearest.hpp"
+#include "runtime/system/nearest.hpp"
 
 #include <algorithm>
 #include <cctype>

@@ -5,9 +5,10 @@
 #include "host/cli/text_chart.hpp"
 #include "host/cli/volume_options.hpp"
 #include "host/render/device_volume.hpp"
-#include "runtime/json_text.hpp"
-#include "runtime/select.hpp"
-#include "runtime/size.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/system/json_text.hpp"
+#include "runtime/system/size.hpp"
+#include "runtime/trust/trust.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -79,7 +80,7 @@ MemoryPlan plan_for(const Device& device, const Voxels& v, const MajorantGrid& g
         plan.layout = device_layout(device, whole);
         if (plan.layout->stored_bytes() > plan.free_bytes) plan.problem = fmt::format("{} are free", size_text(plan.free_bytes));
     } catch (const Error& e) {
-        if (e.kind() != ErrorKind::memory) throw;
+        if (e.kind() != ErrorKind::device_memory) throw;
         plan.problem = e.line();
     }
     return plan;
@@ -87,7 +88,7 @@ MemoryPlan plan_for(const Device& device, const Voxels& v, const MajorantGrid& g
 
 Voxels volume_of(const InfoOptions& o) {
     if (!is_demo_volume(o.input)) return read_volume(o.input, o.volume);
-    std::vector devices{Device::open(select_devices(o.selector, "render").devices.front())};
+    std::vector devices{open_trusted(select_devices(o.selector, "render").devices.front())};
     return open_volume(o.input, o.volume, devices);
 }
 
@@ -113,7 +114,7 @@ void add_plans(InfoReport& r, const InfoOptions& o) {
         const Selection selection = select_devices(o.selector, "render");
         const MajorantGrid grid = majorant_grid(r.volume);
         for (const DeviceFacts& facts : selection.devices) // no kernel is built, so a device need not be trusted
-            r.plans.push_back(plan_for(Device::open(facts, true), r.volume, grid));
+            r.plans.push_back(plan_for(Device::open_untested(facts), r.volume, grid));
         r.rule = selection.rule;
     } catch (const Error& e) {
         if (e.kind() != ErrorKind::device || !o.selector.empty()) throw;

@@ -1,6 +1,6 @@
 #include "host/cli/open_volume.hpp"
-#include "host/volume/phantom.hpp"
-#include "runtime/dealer.hpp"
+#include "host/phantom/phantom.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include <spdlog/spdlog.h>
 

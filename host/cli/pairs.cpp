@@ -1,15 +1,15 @@
 // clvr pairs: views around a volume as noisy frames and references, to train and test denoisers on.
-#include "host/train/pairs.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/open_volume.hpp"
 #include "host/cli/progress_bar.hpp"
 #include "host/cli/render_options.hpp"
-#include "host/experiment/pairs_folder.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/scene/scene_inputs.hpp"
+#include "host/pairs/folder.hpp"
+#include "host/pairs/rendering.hpp"
 #include "runtime/error.hpp"
-#include "runtime/signals.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/signals.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>

@@ -1,14 +1,14 @@
 #include "host/cli/program.hpp"
+#include "host/appearance/transfer_function.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/described/help.hpp"
 #include "host/cli/described/share_files.hpp"
 #include "host/cli/described/single_values.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/dataset/manifest.hpp"
+#include "host/phantom/phantom.hpp"
 #include "host/selftest/selftest.hpp"
-#include "host/volume/phantom.hpp"
-#include "host/volume/transfer_function.hpp"
-#include "runtime/source.hpp"
+#include "runtime/opencl/source.hpp"
 
 #include <spdlog/spdlog.h>
 

@@ -7,7 +7,6 @@
 #include "host/cli/render_options.hpp"
 #include "host/denoise/channels.hpp"
 #include "host/denoise/denoiser.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
@@ -15,9 +14,10 @@
 #include "host/io/scene/scene_inputs.hpp"
 #include "host/render/params.hpp"
 #include "host/render/session.hpp"
-#include "runtime/embedded.hpp"
-#include "runtime/sha256.hpp"
-#include "runtime/signals.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/embedded.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/system/signals.hpp"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -141,7 +141,7 @@ void render(RenderOptions o) {
     if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
     std::optional<Model> model;
     if (o.denoise) model = read_model(o.model);
-    PictureOutputs pictures(o.outputs, " (or over --background)");
+    PictureOutputs pictures(o.outputs, o.channels, " (or over --background)");
     if (!o.save_scene.empty()) check_writable(o.save_scene);
     const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr_path);
 

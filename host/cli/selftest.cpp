@@ -2,10 +2,10 @@
 #include "host/cli/commands.hpp"
 
 #include "host/selftest/selftest.hpp"
+#include "runtime/choose/select.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
-#include "runtime/select.hpp"
-#include "runtime/signals.hpp"
+#include "runtime/system/json_text.hpp"
+#include "runtime/system/signals.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -106,11 +106,11 @@ void test_devices(const SelftestOptions& o, const std::vector<const selftest::Ch
 void selftest_command(const SelftestOptions& o) {
     const auto wanted = selftest::chosen_checks(o.checks);
     void* memory = mmap(nullptr, sizeof(Running), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED) throw Error(ErrorKind::memory, "no memory to share with a child process");
+    if (memory == MAP_FAILED) throw Error(ErrorKind::host_memory, "no memory to share with a child process");
     Running& running = *static_cast<Running*>(memory);
     std::fflush(nullptr);
     const pid_t child = fork();
-    if (child < 0) throw Error(ErrorKind::memory, "no child process can be started");
+    if (child < 0) throw Error(ErrorKind::host_memory, "no child process can be started");
     if (child == 0) {
         prctl(PR_SET_PDEATHSIG, SIGTERM); // ends with this process
         watch_signals("clvr");

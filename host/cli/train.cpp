@@ -3,11 +3,11 @@
 #include "host/cli/device_options.hpp"
 #include "host/cli/file_options.hpp"
 #include "host/cli/progress_bar.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
-#include "runtime/signals.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/signals.hpp"
 
 #include <cstdio>
 #include <fmt/format.h>

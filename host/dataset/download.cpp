@@ -1,5 +1,6 @@
 #include "host/dataset/download.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/hashes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +11,6 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <memory>
-#include <openssl/evp.h>
 #include <thread>
 
 namespace clvr {
@@ -19,21 +19,14 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string sha512_of(const std::string& path) {
-    const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+    Hash hash(Hash::Kind::sha512);
     std::ifstream in(path, std::ios::binary);
     std::array<char, 1 << 16> piece;
-    bool good = context && EVP_DigestInit_ex(context.get(), EVP_sha512(), nullptr) == 1;
-    while (good && in) {
+    while (in) {
         in.read(piece.data(), piece.size());
-        good = EVP_DigestUpdate(context.get(), piece.data(), static_cast<std::size_t>(in.gcount())) == 1;
+        hash.add(piece.data(), static_cast<std::size_t>(in.gcount()));
     }
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-    unsigned length = 0;
-    if (!good || EVP_DigestFinal_ex(context.get(), digest.data(), &length) != 1)
-        throw Error(ErrorKind::internal, "SHA-512 is not available");
-    std::string hex;
-    for (unsigned i = 0; i < length; ++i) hex += fmt::format("{:02x}", digest[i]);
-    return hex;
+    return hash.hex();
 }
 
 std::uint64_t size_of(const std::string& path) {

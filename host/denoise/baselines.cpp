@@ -12,8 +12,8 @@ namespace clvr {
 
 namespace {
 
-constexpr const char* features[CLVR_FILTER_FEATURES] = {"opacity.A", "albedo.R", "albedo.G", "albedo.B",
-                                                        "normal.X",  "normal.Y", "normal.Z", "depth.Z"};
+constexpr const char* features[CLVR_FILTER_FEATURES] = {channel::opacity,   channel::albedo[0], channel::albedo[1], channel::albedo[2],
+                                                        channel::normal[0], channel::normal[1], channel::normal[2], channel::depth};
 constexpr float albedo_floor = 1.0f / 32, opacity_floor = 1.0f / 256;
 constexpr int pad = 32, wavelet_levels = 5;
 
@@ -60,7 +60,7 @@ public:
         f.attributes = frame_.attributes, f.further = frame_.further;
         for (int c = 0; c < 3; ++c) {
             std::vector<float>& to = f.channel(colour_channels[c]);
-            const std::vector<float>* const background = frame_.find(std::string("background.") + colour_channels[c]);
+            const std::vector<float>* const background = frame_.find(channel::background[static_cast<std::size_t>(c)]);
             for (std::size_t i = 0; i < to.size(); ++i) {
                 to[i] = std::max(all[c * plane() + at(i)] * albedo(c, i) * opacity(i), 0.0f);
                 if (background) to[i] += (1 - opacity(i)) * finite((*background)[i]);
@@ -98,7 +98,7 @@ private:
 
         const float shares[] = {0.2126f, 0.7152f, 0.0722f};
         const std::vector<float>* variance[3];
-        for (int c = 0; c < 3; ++c) variance[c] = frame_.find(std::string("variance.") + colour_channels[c]);
+        for (int c = 0; c < 3; ++c) variance[c] = frame_.find(channel::variance[static_cast<std::size_t>(c)]);
         has_variance = variance[0] && variance[1] && variance[2];
         planes.assign(4 * plane() + 16, 0);
         float* const luminance_variance = &planes[3 * plane()];

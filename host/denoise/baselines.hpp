@@ -1,7 +1,7 @@
 // The classical denoisers that the network is measured against.
 #pragma once
 #include "host/frame/frame.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 namespace clvr {
 
@@ -20,7 +20,7 @@ struct Wavelet {
 /// Denoises with what the network has, too: radiance over albedo (not below 1/32), pixels weighted by opacity, features albedo.*, normal.*,
 /// depth.Z (those that the frame lacks do not count), variance.* (estimated from the neighbourhood when absent). The result has R G B
 /// (linear, premultiplied, with the background added below again) and A = opacity.A. Throws Error{input} when R G B is missing,
-/// Error{usage} for a sigma that is not positive, Error{memory}.
+/// Error{usage} for a sigma that is not positive, Error{device_memory}.
 Frame denoise(const Device& device, const Frame& frame, const CrossBilateral& settings);
 Frame denoise(const Device& device, const Frame& frame, const Wavelet& settings);
 

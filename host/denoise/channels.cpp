@@ -16,12 +16,12 @@ bool is_radiance(const std::string& name) { return name == "R" || name == "G" ||
 int known_colour(const std::string& name) { return name == "known.R" ? 0 : name == "known.G" ? 1 : name == "known.B" ? 2 : -1; }
 const std::string noise_channel = "noise"; // (samples per pixel)^(-1/2), from the frame's attribute
 
-float noise_level(const Frame& frame) {
-    const auto spp = frame.attributes.find("clvr.spp");
-    return static_cast<float>(1 / std::sqrt(std::max(1.0, std::atof(spp->second.c_str()))));
-}
-
 } // namespace
+
+double samples_of(const Frame& frame) {
+    const auto spp = frame.attributes.find("clvr.spp");
+    return spp == frame.attributes.end() ? 1 : std::clamp(std::atof(spp->second.c_str()), 1.0, 1e9);
+}
 
 ChannelPlan::ChannelPlan(const Model& model, bool with_target)
     : exposure_(model.exposure), weighted_(model.opacity_weight), known_(model.control_variate), known_cell_(model.control_variate_cell),
@@ -38,6 +38,10 @@ ChannelPlan::ChannelPlan(const Model& model, bool with_target)
     if (weighted_) add("opacity.A"); // free of noise, which A of few paths is not
     if (known_) planes_.insert(planes_.end(), {"known.R", "known.G", "known.B"});
     for (const auto& name : model.channels) {
+        if (name == noise_channel) {
+            channels_.push_back({0, shared::CLVR_CHANNEL_NOISE});
+            continue;
+        }
         add(name);
         const auto kind = is_radiance(name) || known_colour(name) >= 0 ? shared::CLVR_CHANNEL_RADIANCE
                           : name.rfind("normal.", 0) == 0              ? shared::CLVR_CHANNEL_NORMAL
@@ -64,7 +68,7 @@ int plane_in(const Film& film, const std::string& name) { return film.find(is_ra
 } // namespace
 
 template <class Number>
-shared::SourceParams ChannelPlan::params_by(double exposure, const Number& plane) const {
+shared::SourceParams ChannelPlan::params_by(double exposure, double samples, const Number& plane) const {
     constexpr float ceiling = 32; // kernels/denoise/README.md, "Switches"
     shared::SourceParams p{};
     p.beauty = plane("R");
@@ -76,20 +80,24 @@ shared::SourceParams ChannelPlan::params_by(double exposure, const Number& plane
     p.exposure = exposure_ ? static_cast<float>(exposure) : 1.0f;
     p.ceiling = exposure_ ? ceiling : 0x1p126f;
     p.albedo_floor = albedo_floor_;
+    p.noise = static_cast<float>(1 / std::sqrt(samples));
     return p;
 }
 
-shared::SourceParams ChannelPlan::params(double exposure) const {
-    return params_by(exposure, [this](const std::string& name) { return plane(name); });
+shared::SourceParams ChannelPlan::params(const Frame& frame) const { return params(exposure_ ? exposure_of(frame) : 1, samples_of(frame)); }
+
+shared::SourceParams ChannelPlan::params(double exposure, double samples) const {
+    return params_by(exposure, samples, [this](const std::string& name) { return plane(name); });
 }
 
-shared::SourceParams ChannelPlan::params(double exposure, const Film& film) const {
-    return params_by(exposure, [&film](const std::string& name) { return plane_in(film, name); });
+shared::SourceParams ChannelPlan::params(double exposure, double samples, const Film& film) const {
+    return params_by(exposure, samples, [&film](const std::string& name) { return plane_in(film, name); });
 }
 
 std::vector<std::array<std::int32_t, 2>> ChannelPlan::channels(const Film& film) const {
     std::vector<std::array<std::int32_t, 2>> there = channels_;
-    for (auto& channel : there) channel[0] = plane_in(film, planes_[static_cast<std::size_t>(channel[0])]);
+    for (auto& channel : there)
+        if (channel[1] != shared::CLVR_CHANNEL_NOISE) channel[0] = plane_in(film, planes_[static_cast<std::size_t>(channel[0])]);
     return there;
 }
 
@@ -102,9 +110,11 @@ std::vector<std::string> ChannelPlan::missing(const Frame& frame) const {
                 if (!frame.has(read) && std::find(names.begin(), names.end(), read) == names.end()) names.push_back(read);
             continue;
         }
-        const bool there = name == noise_channel ? frame.attributes.count("clvr.spp") != 0 : frame.has(name);
-        if (!there && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        if (!frame.has(name) && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
+    const bool reads_noise =
+        std::any_of(channels_.begin(), channels_.end(), [](const auto& c) { return c[1] == shared::CLVR_CHANNEL_NOISE; });
+    if (reads_noise && frame.attributes.count("clvr.spp") == 0) names.push_back(noise_channel);
     return names;
 }
 
@@ -128,17 +138,6 @@ BeautyWithoutBackground::BeautyWithoutBackground(const Frame& frame, const std::
     if (background && alpha) background_ = background->data(), alpha_ = alpha->data();
 }
 
-std::vector<std::string> ChannelPlan::made_planes() const {
-    std::vector<std::string> names;
-    std::copy_if(planes_.begin(), planes_.end(), std::back_inserter(names),
-                 [](const std::string& name) { return known_colour(name) >= 0 || name == noise_channel; });
-    return names;
-}
-
-bool ChannelPlan::reads_known_light() const {
-    return std::any_of(planes_.begin(), planes_.end(), [](const std::string& name) { return known_colour(name) >= 0; });
-}
-
 std::optional<KnownLight> ChannelPlan::known_light(const Frame& frame) const {
     if (!reads_known_light()) return std::nullopt;
     return KnownLight(frame, known_cell_);
@@ -157,8 +156,6 @@ std::size_t ChannelPlan::gather_plane(const std::string& name, const Frame& fram
     };
     if (const int c = known_colour(name); c >= 0)
         add([&known, c](std::size_t i) { return (*known)(c, i); });
-    else if (name == noise_channel)
-        add([noise = noise_level(frame)](std::size_t) { return noise; });
     else if (is_radiance(name))
         add(BeautyWithoutBackground(frame, name));
     else
@@ -178,26 +175,31 @@ std::size_t ChannelPlan::gather(const Frame& frame, const Frame* target, const R
 }
 
 double exposure_of(const Frame& frame) {
-    constexpr int block = 16;
     const std::vector<float>* const opacities = frame.opacity();
     const BeautyWithoutBackground red(frame, "R"), green(frame, "G"), blue(frame, "B");
-    double sum = 0;
-    int blocks = 0;
-    for (int y0 = 0; y0 < frame.height; y0 += block)
-        for (int x0 = 0; x0 < frame.width; x0 += block) {
-            double luminance = 0, opacity = 0;
-            int n = 0;
-            for (int y = y0; y < std::min(y0 + block, frame.height); ++y)
-                for (int x = x0; x < std::min(x0 + block, frame.width); ++x, ++n) {
+    std::vector<ExposureBlock> blocks;
+    for (int y0 = 0; y0 < frame.height; y0 += exposure_block)
+        for (int x0 = 0; x0 < frame.width; x0 += exposure_block) {
+            ExposureBlock block;
+            for (int y = y0; y < std::min(y0 + exposure_block, frame.height); ++y)
+                for (int x = x0; x < std::min(x0 + exposure_block, frame.width); ++x, ++block.pixels) {
                     const std::size_t i = static_cast<std::size_t>(y) * frame.width + x;
                     const double l = 0.2126 * red(i) + 0.7152 * green(i) + 0.0722 * blue(i);
-                    if (std::isfinite(l)) luminance += std::max(l, 0.0);
+                    if (std::isfinite(l)) block.luminance += std::max(l, 0.0);
                     const double a = opacities ? (*opacities)[i] : 1;
-                    if (std::isfinite(a)) opacity += a;
+                    if (std::isfinite(a)) block.opacity += a;
                 }
-            if (opacity > n / 64.0 && luminance > 0) sum += std::log2(luminance / n), ++blocks;
+            blocks.push_back(block);
         }
-    return blocks == 0 ? 1 : 0.18 / std::exp2(sum / blocks);
+    return exposure_of(blocks);
+}
+
+double exposure_of(const std::vector<ExposureBlock>& blocks) {
+    double sum = 0;
+    int counted = 0;
+    for (const ExposureBlock& b : blocks)
+        if (b.opacity > b.pixels / 64.0 && b.luminance > 0) sum += std::log2(b.luminance / b.pixels), ++counted;
+    return counted == 0 ? 1 : 0.18 / std::exp2(sum / counted);
 }
 
 } // namespace clvr

@@ -23,15 +23,15 @@ public:
     const std::vector<std::string>& planes() const { return planes_; }
     /// (plane, ChannelKind) per channel of the network's input, as kernels/denoise/assemble.cl reads it.
     const std::vector<std::array<std::int32_t, 2>>& channels() const { return channels_; }
-    /// The model's switches and plane numbers; `exposure` from exposure_of.
-    shared::SourceParams params(double exposure) const;
+    /// The model's switches and plane numbers, with what it takes of the whole frame: exposure (exposure_of) and samples per pixel.
+    shared::SourceParams params(double exposure, double samples) const;
+    shared::SourceParams params(const Frame& frame) const;
 
-    /// Those of planes() that no frame has: known.R/G/B and noise.
-    std::vector<std::string> made_planes() const;
-    bool reads_known_light() const;
+    /// Whether planes() has known.R/G/B, which no frame has.
+    bool reads_known_light() const { return plane("known.R") >= 0; }
     /// Both for the planes of a film that has all of planes(): as numbers there, noisy.R G B A in place of R G B A.
     std::vector<std::array<std::int32_t, 2>> channels(const Film& film) const;
-    shared::SourceParams params(double exposure, const Film& film) const;
+    shared::SourceParams params(double exposure, double samples, const Film& film) const;
 
     /// Channels that the model reads and the frame lacks; "noise" where it does not say its samples per pixel.
     std::vector<std::string> missing(const Frame& frame) const;
@@ -57,8 +57,11 @@ private:
 
     int plane(const std::string& name) const; // its number; -1 where there is no such plane
     template <class Number>
-    shared::SourceParams params_by(double exposure, const Number& plane) const;
+    shared::SourceParams params_by(double exposure, double samples, const Number& plane) const;
 };
+
+/// Samples per pixel of a frame; 1 where it does not say.
+double samples_of(const Frame& frame);
 
 /// Whether a model reads the light.* channels of a frame.
 bool reads_light(const Model& model);
@@ -67,6 +70,16 @@ bool reads_light(const Model& model);
 /// over blocks of 16x16 pixels whose mean opacity is above 1/64 and whose luminance is above 0; 1 where there is none. Reads the whole
 /// frame: R G B minus the background, opacity.A (else A).
 double exposure_of(const Frame& frame);
+
+/// Sums over a block of pixels.
+struct ExposureBlock {
+    double luminance = 0, opacity = 0;
+    int pixels = 0;
+};
+/// Pixels a side of a block.
+constexpr int exposure_block = 16;
+/// exposure_of a picture of these blocks.
+double exposure_of(const std::vector<ExposureBlock>& blocks);
 
 /// A colour of a frame, minus the background seen through it, pixel by pixel. The frame must outlive it.
 class BeautyWithoutBackground {

@@ -1,8 +1,9 @@
 #include "host/denoise/denoiser.hpp"
 #include "host/denoise/neural_grid.hpp"
+#include "host/denoise/picture_light.hpp"
 #include "host/denoise/tunables.hpp"
-#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -71,13 +72,15 @@ struct Denoiser::State {
     Model model;
     ChannelPlan plan;
     Tiling tiling;
+    PictureLight light;
     Buffer parameters;
     std::unique_ptr<NeuralGrid> grid; // of the last tile's size, kept for the next frame
     BatchShape shape;
     Kernel finish;
     std::size_t repaired = 0;
 
-    State(const Device& d, const Model& m) : device(d), model(m), plan(m, false), tiling(m), finish(device.kernel("denoise/finish")) {
+    State(const Device& d, const Model& m)
+        : device(d), model(m), plan(m, false), tiling(m), light(d, m), finish(device.kernel("denoise/finish")) {
         parameters = device.upload(m.flat(), "model");
     }
 
@@ -142,7 +145,7 @@ struct Denoiser::State {
         if (with_opacity)
             copy(device, film.planes(), film.planes(), plane_bytes, film.find("opacity.A") * plane_bytes, (out + 3) * plane_bytes);
 
-        const shared::SourceParams params = plan.params(exposure, film);
+        const shared::SourceParams params = plan.params(exposure, std::max(film.samples, 1), film);
         const Buffer channels = device.upload(plan.channels(film), "channel list");
         const auto size = static_cast<cl_uint>(film.pixels());
         // Blending sums over pixels beside the inner part.
@@ -203,7 +206,7 @@ struct Denoiser::State {
 
     /// Size of the parts in which a picture on the host goes through: all of it where the budget holds its planes.
     Region window_size(const Frame& frame) const {
-        const std::size_t planes = plan.planes().size() + beauty_planes.size() + noisy_planes.size() + variance_planes.size() + 1;
+        const std::size_t planes = names_to_upload(frame, true).size();
         const std::size_t bytes = planes * 4 + (has_variances(frame) ? 4 + 52 : 0), most = window_budget();
         return part_of(frame.width, frame.height, [&](const Region& t) {
             const int more = 2 * (tiling.halo + CLVR_BLEND_RADIUS + 1) + tiling.align;
@@ -213,31 +216,51 @@ struct Denoiser::State {
         });
     }
 
-    /// What it takes of a frame to denoise a part of it: `region` on a film.
-    Film upload(const Frame& frame, const Region& region, const std::optional<KnownLight>& known) {
+    /// The planes that a film of a frame has for filtering it, or for what must be known of the whole picture before.
+    std::vector<std::string> names_to_upload(const Frame& frame, bool to_filter) const {
         std::vector<std::string> names = beauty_planes;
         const auto add = [&](const std::vector<std::string>& more) {
             std::copy_if(more.begin(), more.end(), std::back_inserter(names),
                          [&](const std::string& name) { return std::find(names.begin(), names.end(), name) == names.end(); });
         };
-        add(noisy_planes);
-        if (has_variances(frame)) add(variance_planes);
-        add(plan.planes());
-        if (frame.has("opacity.A") && frame.has("A")) add({"opacity.A"});
+        if (to_filter) {
+            add(noisy_planes);
+            if (has_variances(frame)) add(variance_planes);
+            add(plan.planes());
+        }
+        if (plan.reads_known_light()) add(known_light_channels());
+        if (frame.has("opacity.A")) add({"opacity.A"});
+        return names;
+    }
+
+    /// `region` of a frame on a film. Its planes without values, which are made there, hold anything.
+    Film upload(const Frame& frame, const Region& region, const std::vector<std::string>& names) {
         Film film(device, region.width, region.height, names.size());
         film.require(names);
-        if (const auto spp = frame.attributes.find("clvr.spp"); spp != frame.attributes.end())
-            film.samples = static_cast<int>(std::clamp(std::atof(spp->second.c_str()), 0.0, 1e9));
+        if (frame.attributes.count("clvr.spp")) film.samples = static_cast<int>(samples_of(frame));
         std::vector<float> plane;
         for (const std::string& name : names) {
-            const bool read = std::find(plan.planes().begin(), plan.planes().end(), name) != plan.planes().end();
-            if (!read && (!frame.has(name) || name.rfind("noisy.", 0) == 0)) continue; // run() makes the noisy ones
+            if (!frame.has(name) || name.rfind("noisy.", 0) == 0) continue;
             plane.clear();
-            const std::size_t bad = plan.gather_plane(name, frame, region, known, plane);
-            if (read) repaired += bad;
+            const std::size_t bad = plan.gather_plane(name, frame, region, std::nullopt, plane);
+            if (std::find(plan.planes().begin(), plan.planes().end(), name) != plan.planes().end()) repaired += bad;
             film.upload(name, plane);
         }
         return film;
+    }
+
+    /// Exposure and known light of a frame that goes through in parts of `size`.
+    void look_at(const Frame& frame, const Region& size) {
+        const auto side = [&](int most) { return std::max(light.block(), most / light.block() * light.block()); };
+        const int width = side(size.width), height = side(size.height);
+        const std::vector<std::string> names = names_to_upload(frame, false);
+        for (int y = 0; y < frame.height; y += height)
+            for (int x = 0; x < frame.width; x += width) {
+                const Region region{x, y, std::min(width, frame.width - x), std::min(height, frame.height - y)};
+                Film film = upload(frame, region, names);
+                light.add(film, region);
+            }
+        repaired = 0; // they are counted when they are filtered
     }
 };
 
@@ -259,17 +282,11 @@ std::size_t Denoiser::repaired() const { return state_->repaired; }
 
 namespace {
 
-/// What of a film the host reads to know exposure and light; channels that only need to be there are empty.
-Frame statistics_of(Film& film, const ChannelPlan& plan) {
+/// A frame with the film's channels and attributes, without values.
+Frame outline_of(const Film& film) {
     Frame frame;
-    frame.width = film.width(), frame.height = film.height();
-    frame.attributes["clvr.spp"] = std::to_string(film.samples);
-    for (const std::string& name : plan.planes())
-        if (film.find(name) >= 0) frame.channels[name] = {};
-    std::vector<std::string> read{"R", "G", "B", "opacity.A"};
-    if (plan.reads_known_light()) read.insert(read.end(), known_light_channels().begin(), known_light_channels().end());
-    for (const std::string& name : read)
-        if (film.find(name) >= 0 && frame.channels[name].empty()) frame.channels[name] = film.download(name);
+    for (const std::string& name : film.names()) frame.channels[name] = {};
+    if (film.samples > 0) frame.attributes["clvr.spp"] = std::to_string(film.samples);
     return frame;
 }
 
@@ -278,21 +295,13 @@ Frame statistics_of(Film& film, const ChannelPlan& plan) {
 void Denoiser::denoise(Film& film) {
     State& s = *state_;
     if (!film.is_on(s.device)) throw Error(ErrorKind::internal, "the picture lies on another device", "Denoiser");
-    const Frame frame = statistics_of(film, s.plan);
-    s.plan.check(frame);
+    s.plan.check(outline_of(film));
     s.repaired = 0;
-    const double exposure = s.model.exposure ? exposure_of(frame) : 1;
-    // What the plan makes on the host: known light and the noise level.
     const Region whole{0, 0, film.width(), film.height()};
-    const std::vector<std::string> made = s.plan.made_planes();
-    if (!made.empty()) film.require(made);
-    const std::optional<KnownLight> known = s.plan.known_light(frame);
-    for (const std::string& name : made) {
-        std::vector<float> plane;
-        s.plan.gather_plane(name, frame, whole, known, plane);
-        film.upload(name, plane);
-    }
-    s.run(film, {whole.width, whole.height, whole, whole}, exposure, true, false, {});
+    s.light.begin(whole.width, whole.height, true);
+    s.light.add(film, whole);
+    s.light.make_known(film, 0, 0);
+    s.run(film, {whole.width, whole.height, whole, whole}, s.light.exposure(), true, false, {});
     film.denoised = true;
 }
 
@@ -312,7 +321,7 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     for (int l = 1; l <= levels; ++l) outputs.push_back(view.guides ? &done.channel(fmt::format("guide.{}", l)) : nullptr);
     for (int l = 1; l < levels; ++l) outputs.push_back(view.weights ? &done.channel(fmt::format("weight.{}", l)) : nullptr);
 
-    const double exposure = s.model.exposure ? exposure_of(frame) : 1;
+    double exposure = 1;
     const auto on_tile = [&](NeuralGrid& g, const Region& inner, const Region& outer) {
         const auto put = [&](const Buffer& from, std::size_t channels, std::size_t channel, std::vector<float>& to, float divisor) {
             const std::vector<float> plane = g.download(from, static_cast<int>(channels), 0, static_cast<int>(channel));
@@ -321,19 +330,24 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
                     to[static_cast<std::size_t>(inner.y + y) * frame.width + inner.x + x] = std::max(
                         plane[static_cast<std::size_t>(inner.y + y - outer.y) * outer.width + inner.x + x - outer.x] / divisor, 0.0f);
         };
-        for (std::size_t c = 0; c < shown.size(); ++c)
-            put(g.result(), 3 + shown.size(), 3 + c, *shown[c], s.plan.params(exposure).exposure);
+        for (std::size_t c = 0; c < shown.size(); ++c) put(g.result(), 3 + shown.size(), 3 + c, *shown[c], static_cast<float>(exposure));
         for (std::size_t c = 0; c < outputs.size(); ++c)
             if (outputs[c]) put(g.outputs(), outputs.size(), c, *outputs[c], 1);
     };
-    const std::optional<KnownLight> known = s.plan.known_light(frame);
     const Region size = s.window_size(frame);
+    const std::vector<std::string> names = s.names_to_upload(frame, true);
+    const bool at_once = size.pixels() == frame.pixels();
+    s.light.begin(frame.width, frame.height, frame.has("A"));
+    if (!at_once) s.look_at(frame, size);
     for (int y = 0; y < frame.height; y += size.height)
         for (int x = 0; x < frame.width; x += size.width) {
             const Region inner{x, y, std::min(size.width, frame.width - x), std::min(size.height, frame.height - y)},
                 region = s.tiling.outer(grown(inner, CLVR_BLEND_RADIUS + 1, frame.width, frame.height), frame.width, frame.height);
             if (inner.pixels() != frame.pixels()) s.grid.reset(); // it may have taken the room of this part
-            Film film = s.upload(frame, region, known);
+            Film film = s.upload(frame, region, names);
+            if (at_once) s.light.add(film, region);
+            exposure = s.light.exposure();
+            s.light.make_known(film, region.x, region.y);
             s.run(film, {frame.width, frame.height, region, inner}, exposure, alpha, view.levels, on_tile);
             for (const std::string& name : beauty_planes) {
                 if (name == "A" && !alpha) continue;

@@ -3,7 +3,7 @@
 #include "host/denoise/model.hpp"
 #include "host/frame/film.hpp"
 #include "host/frame/frame.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <memory>
 #include <string>
@@ -27,7 +27,7 @@ public:
     /// end. Where the frame has variances (from 2 samples per pixel on), the result goes back towards the input as the input converges.
     /// Non-finite values are repaired and counted in repaired(). `show` adds the channels guide.1 ..., weight.1 ..., level1.R .... A
     /// picture of any size: what the device does not hold at once goes through in overlapping tiles, with the same bits. Throws
-    /// Error{input} naming a channel that the model reads and the frame lacks (and what it has); Error{memory}.
+    /// Error{input} naming a channel that the model reads and the frame lacks (and what it has); Error{device_memory}.
     Frame denoise(const Frame& frame, const DenoiserView& show = {});
 
     /// A film on this device, in place: R G B A become the result, the input stays in noisy.R G B A. The same bits as for the frame that

@@ -33,54 +33,53 @@ std::array<double, 3> solve(std::array<std::array<double, 3>, 3> a, std::array<d
     return b;
 }
 
-/// Weighted least squares of a value by three others, summed up.
-struct Sums {
-    std::array<std::array<double, 3>, 3> a{}; ///< lower half
-    std::array<double, 3> b{};
-    double squares = 0, count = 0;
+// Places in a LightFit.
+constexpr std::size_t right_side = 6, squares = 9, pixels = 10;
+constexpr std::size_t of_matrix(std::size_t r, std::size_t k) { return r * (r + 1) / 2 + k; }
 
-    void add(const std::array<double, 3>& v, double value, double weight) {
-        for (std::size_t r = 0; r < 3; ++r) {
-            for (std::size_t k = 0; k <= r; ++k) a[r][k] += weight * v[r] * v[k];
-            b[r] += weight * v[r] * value;
-        }
-        squares += weight * value * value;
-        count += 1;
+void add(LightFit& fit, const std::array<double, 3>& v, double value, double weight) {
+    for (std::size_t r = 0; r < 3; ++r) {
+        for (std::size_t k = 0; k <= r; ++k) fit[of_matrix(r, k)] += weight * v[r] * v[k];
+        fit[right_side + r] += weight * v[r] * value;
     }
-    void add(const Sums& s, double weight) {
-        for (std::size_t r = 0; r < 3; ++r) {
-            for (std::size_t k = 0; k <= r; ++k) a[r][k] += weight * s.a[r][k];
-            b[r] += weight * s.b[r];
-        }
+    fit[squares] += weight * value * value;
+    fit[pixels] += 1;
+}
+
+/// Mean square of what the shares leave unexplained.
+double left(const LightFit& fit, const LightShares& s) {
+    const double x[3] = {s.key, s.sky, s.ambient};
+    double sum = fit[squares];
+    for (std::size_t r = 0; r < 3; ++r) {
+        sum += x[r] * (x[r] * fit[of_matrix(r, r)] - 2 * fit[right_side + r]);
+        for (std::size_t k = 0; k < r; ++k) sum += 2 * x[r] * x[k] * fit[of_matrix(r, k)];
     }
-    /// Mean square of what the shares leave unexplained.
-    double left(const KnownLight::Shares& s) const {
-        const double x[3] = {s.key, s.sky, s.ambient};
-        double sum = squares;
-        for (std::size_t r = 0; r < 3; ++r) {
-            sum += x[r] * (x[r] * a[r][r] - 2 * b[r]);
-            for (std::size_t k = 0; k < r; ++k) sum += 2 * x[r] * x[k] * a[r][k];
-        }
-        return std::max(sum, 0.0) / std::max(count, 1.0);
+    return std::max(sum, 0.0) / std::max(fit[pixels], 1.0);
+}
+
+/// The shares of least squares, with `expected` as a prior of the weights `extra`.
+LightShares solved(const LightFit& fit, const LightShares& expected, const std::array<double, 3>& extra) {
+    std::array<std::array<double, 3>, 3> matrix{};
+    std::array<double, 3> right{};
+    const double x[3] = {expected.key, expected.sky, expected.ambient};
+    for (std::size_t r = 0; r < 3; ++r) {
+        for (std::size_t k = 0; k <= r; ++k) matrix[r][k] = fit[of_matrix(r, k)];
+        matrix[r][r] += extra[r], right[r] = fit[right_side + r] + extra[r] * x[r];
     }
-    /// The shares of least squares, with `expected` as a prior of the weights `extra`.
-    KnownLight::Shares solved(const KnownLight::Shares& expected, const std::array<double, 3>& extra) const {
-        auto matrix = a;
-        auto right = b;
-        const double x[3] = {expected.key, expected.sky, expected.ambient};
-        for (std::size_t r = 0; r < 3; ++r) matrix[r][r] += extra[r], right[r] += extra[r] * x[r];
-        const auto found = solve(matrix, right);
-        return {std::clamp(found[0], 0.0, 4.0), std::clamp(found[1], 0.0, 4.0), std::clamp(found[2], -1.0, 1.0)};
-    }
-};
+    const auto found = solve(matrix, right);
+    return {std::clamp(found[0], 0.0, 4.0), std::clamp(found[1], 0.0, 4.0), std::clamp(found[2], -1.0, 1.0)};
+}
 
 /// Each cell becomes the sum of itself and half of its two neighbours `stride` apart in lines of n cells.
-void tent(std::vector<Sums>& cells, std::size_t n, std::size_t stride) {
-    const std::vector<Sums> before = cells;
+void tent(std::vector<LightFit>& cells, std::size_t n, std::size_t stride) {
+    const std::vector<LightFit> before = cells;
+    const auto add_half = [](LightFit& to, const LightFit& from) {
+        for (std::size_t k = 0; k < squares; ++k) to[k] += 0.5 * from[k];
+    };
     for (std::size_t c = 0; c < cells.size(); ++c) {
         const std::size_t i = c / stride % n;
-        if (i > 0) cells[c].add(before[c - stride], 0.5);
-        if (i + 1 < n) cells[c].add(before[c + stride], 0.5);
+        if (i > 0) add_half(cells[c], before[c - stride]);
+        if (i + 1 < n) add_half(cells[c], before[c + stride]);
     }
 }
 
@@ -96,16 +95,14 @@ KnownLight::KnownLight(const Frame& frame, int cell) : opacity_(frame.at("opacit
     if (cell > 0) across_ = (frame.width + cell - 1) / cell, down_ = (frame.height + cell - 1) / cell;
     for (std::size_t c = 0; c < 3; ++c) {
         const std::string name = colour_channels[c];
-        colours_[c] = {
-            frame.at("light.key." + name).data(), frame.at("light.sky." + name).data(), frame.at("albedo." + name).data(), {}, {}};
-        fit(colours_[c], frame, name);
+        colours_[c] = {frame.at("light.key." + name).data(), frame.at("light.sky." + name).data(), frame.at("albedo." + name).data(), {}};
+        colours_[c].shares = fit(colours_[c], frame, name);
     }
 }
 
-void KnownLight::fit(Colour& colour, const Frame& frame, const std::string& name) const {
+FittedShares KnownLight::fit(const Colour& colour, const Frame& frame, const std::string& name) const {
     const BeautyWithoutBackground beauty(frame, name);
-    Sums all;
-    std::vector<Sums> cells(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
+    std::vector<LightFit> cells(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
     for (std::size_t i = 0; i < frame.pixels(); ++i) {
         const double opacity = finite(opacity_[i]), key = finite(colour.key[i]), sky = finite(colour.sky[i]),
                      ambient = finite(colour.albedo[i]) * opacity, noisy = finite(beauty(i));
@@ -114,27 +111,34 @@ void KnownLight::fit(Colour& colour, const Frame& frame, const std::string& name
         const double scale = key + sky + 0.05 * ambient + 1e-6, weight = opacity / (scale * scale);
         // One path that is a hundred times as bright as what is known must not decide.
         const double value = std::min(noisy, 100 * scale);
-        all.add({key, sky, ambient}, value, weight);
-        if (cell_ > 0) {
-            const std::size_t edge = static_cast<std::size_t>(cell_), width = static_cast<std::size_t>(width_);
-            cells[i / width / edge * static_cast<std::size_t>(across_) + i % width / edge].add({key, sky, ambient}, value, weight);
-        }
+        const std::size_t edge = static_cast<std::size_t>(cell_), width = static_cast<std::size_t>(width_);
+        add(cells[cell_ == 0 ? 0 : i / width / edge * static_cast<std::size_t>(across_) + i % width / edge], {key, sky, ambient}, value,
+            weight);
     }
-    const double total = all.a[0][0] + all.a[1][1] + all.a[2][2];
+    return fit_shares(std::move(cells), across_, cell_ > 0);
+}
+
+FittedShares fit_shares(std::vector<LightFit> cells, int across, bool varying) {
+    LightFit all{};
+    for (const LightFit& cell : cells)
+        for (std::size_t k = 0; k < all.size(); ++k) all[k] += cell[k];
+    const double total = all[of_matrix(0, 0)] + all[of_matrix(1, 1)] + all[of_matrix(2, 2)];
     std::array<double, 3> extra{};
-    for (std::size_t r = 0; r < 3; ++r) extra[r] = faith * all.a[r][r] + 1e-9 * total + 1e-30;
-    colour.whole = all.solved({}, extra);
-    if (cell_ == 0) return;
+    for (std::size_t r = 0; r < 3; ++r) extra[r] = faith * all[of_matrix(r, r)] + 1e-9 * total + 1e-30;
+    FittedShares shares{solved(all, {}, extra), {}};
+    if (!varying) return shares;
     // A prior: a cell's shares deviate from the whole frame's by `spread`, its values by what the frame's fit left over.
-    const double trust = all.left(colour.whole) / (spread * spread) / std::max(all.count, 1.0);
-    for (std::size_t r = 0; r < 3; ++r) extra[r] = trust * all.a[r][r] + 1e-9 * total + 1e-30;
-    tent(cells, static_cast<std::size_t>(across_), 1);
-    tent(cells, static_cast<std::size_t>(down_), static_cast<std::size_t>(across_));
-    for (const Sums& cell : cells) colour.cells.push_back(cell.solved(colour.whole, extra));
+    const double trust = left(all, shares.whole) / (spread * spread) / std::max(all[pixels], 1.0);
+    for (std::size_t r = 0; r < 3; ++r) extra[r] = trust * all[of_matrix(r, r)] + 1e-9 * total + 1e-30;
+    const std::size_t columns = static_cast<std::size_t>(across);
+    tent(cells, columns, 1);
+    tent(cells, cells.size() / columns, columns);
+    for (const LightFit& cell : cells) shares.cells.push_back(solved(cell, shares.whole, extra));
+    return shares;
 }
 
 KnownLight::Shares KnownLight::shares_at(int colour, std::size_t pixel) const {
-    const Colour& c = colours_[static_cast<std::size_t>(colour)];
+    const FittedShares& c = colours_[static_cast<std::size_t>(colour)].shares;
     if (cell_ == 0) return c.whole;
     // The two cells whose centres lie on either side of the pixel's, along an axis.
     struct Between {

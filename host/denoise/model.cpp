@@ -1,6 +1,8 @@
 #include "host/denoise/model.hpp"
+#include "host/frame/names.hpp"
 #include "kernels/shared/denoise_params.h"
 #include "runtime/error.hpp"
+#include "runtime/system/split_mix.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,11 +15,17 @@ namespace clvr {
 
 namespace {
 
+std::vector<std::string> joined(std::initializer_list<channel::Names> groups, std::initializer_list<const char*> single) {
+    std::vector<std::string> names;
+    for (const channel::Names& group : groups) names.insert(names.end(), group.begin(), group.end());
+    names.insert(names.end(), single.begin(), single.end());
+    return names;
+}
+
 const std::vector<std::string>& known_channels() {
-    static const std::vector<std::string> names{"R",          "G",         "B",        "A",          "albedo.R",   "albedo.G",
-                                                "albedo.B",   "normal.X",  "normal.Y", "normal.Z",   "depth.Z",    "depth.deviation",
-                                                "depth.half", "opacity.A", "noise",    "variance.R", "variance.G", "variance.B",
-                                                "known.R",    "known.G",   "known.B"};
+    using namespace channel;
+    static const std::vector<std::string> names = joined({colour, albedo, normal, variance, {"known.R", "known.G", "known.B"}},
+                                                         {alpha, depth, depth_deviation, depth_half, opacity, "noise"});
     return names;
 }
 
@@ -32,27 +40,14 @@ void check_range(const char* name, int value, int low, int high) {
     if (value < low || value > high) fail(fmt::format("model: {} is {}; expected {} to {}", name, value, low, high));
 }
 
-/// Uniform numbers in [0, 1) from a counter: SplitMix64 (Steele, Lea, Flood 2014), the top 24 bits.
-struct Uniform {
-    std::uint64_t state;
-    double operator()() {
-        std::uint64_t z = state += 0x9e3779b97f4a7c15u;
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return static_cast<double>((z ^ (z >> 31)) >> 40) / (1 << 24);
-    }
-};
-
 } // namespace
 
-std::vector<std::string> reference_channels() {
-    return {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"};
-}
+std::vector<std::string> reference_channels() { return joined({channel::colour, channel::albedo, channel::normal}, {channel::depth}); }
 
 Model default_settings() {
     Model m;
     m.channels = reference_channels();
-    m.channels.insert(m.channels.end(), {"opacity.A", "depth.deviation", "depth.half", "noise"});
+    m.channels.insert(m.channels.end(), {channel::opacity, channel::depth_deviation, channel::depth_half, "noise"});
     m.exposure = true;
     m.albedo_floor = 1.0f / 32;
     m.opacity_weight = true;
@@ -78,7 +73,8 @@ void Model::set_flat(const std::vector<float>& values) {
 void initialise(Model& m, std::uint64_t seed) {
     const std::size_t taps = static_cast<std::size_t>(m.kernel) * m.kernel, in = m.channels.size(),
                       hidden = static_cast<std::size_t>(m.hidden), out = static_cast<std::size_t>(m.outputs());
-    Uniform uniform{seed};
+    SplitMix64 numbers(seed);
+    const auto uniform = [&] { return static_cast<double>(numbers.next() >> 40) / (1 << 24); };
     const auto glorot = [&](std::vector<float>& to, std::size_t from, std::size_t count) {
         const double limit = std::sqrt(6.0 / static_cast<double>(taps * (from + count)));
         to.resize(taps * from * count);

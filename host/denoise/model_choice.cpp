@@ -25,19 +25,20 @@ ModelChoice choose_model(const std::vector<std::pair<std::string, Model>>& candi
 
 MadeChannels add_opacity(Frame& frame, const Model& model) {
     const std::vector<std::string> missing = ChannelPlan(model, false).missing(frame);
-    if (std::find(missing.begin(), missing.end(), "opacity.A") == missing.end()) return {};
-    const bool alpha = frame.has("A");
-    std::vector<float> opacity = alpha ? frame.at("A") : std::vector<float>(frame.pixels(), 1.0f);
-    frame.channels["opacity.A"] = std::move(opacity);
-    return {{"opacity.A"}, alpha ? "opacity.A is taken from A" : "opacity.A is taken as 1: there is no A"};
+    if (std::find(missing.begin(), missing.end(), channel::opacity) == missing.end()) return {};
+    const bool alpha = frame.has(channel::alpha);
+    std::vector<float> opacity = alpha ? frame.at(channel::alpha) : std::vector<float>(frame.pixels(), 1.0f);
+    frame.channels[channel::opacity] = std::move(opacity);
+    return {{channel::opacity}, alpha ? "opacity.A is taken from A" : "opacity.A is taken as 1: there is no A"};
 }
 
 MadeChannels add_normal(Frame& frame) {
     const auto all = [&](const std::vector<std::string>& names, bool there) {
         return std::all_of(names.begin(), names.end(), [&](const auto& name) { return frame.has(name) == there; });
     };
-    const std::vector<std::string> normals{"normal.X", "normal.Y", "normal.Z"};
-    if (!all({"albedo.R", "albedo.G", "albedo.B"}, true) || !all(normals, false)) return {};
+    const std::vector<std::string> albedos(channel::albedo.begin(), channel::albedo.end()),
+        normals(channel::normal.begin(), channel::normal.end());
+    if (!all(albedos, true) || !all(normals, false)) return {};
     for (const auto& name : normals) frame.channel(name);
     return {normals, "normal is taken as 0, no surface: there is none"};
 }

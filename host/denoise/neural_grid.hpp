@@ -2,7 +2,7 @@
 #pragma once
 #include "host/denoise/channels.hpp"
 #include "host/denoise/model.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <vector>
 
@@ -50,7 +50,7 @@ private:
 
 class NeuralGrid {
 public:
-    /// Allocates the batch's buffers. Throws Error{memory}.
+    /// Allocates the batch's buffers. Throws Error{device_memory}.
     NeuralGrid(const Device& device, const Model& model, const BatchShape& shape);
     /// Has the programs built that forward() takes for such images (Device::prepare).
     static void prepare(Device& device, const Model& model, int width, int height, bool show);

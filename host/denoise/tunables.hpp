@@ -1,6 +1,6 @@
 // What may be tuned of the network and its grids.
 #pragma once
-#include "runtime/tunables.hpp"
+#include "runtime/tune/tunables.hpp"
 
 namespace clvr::tunables {
 

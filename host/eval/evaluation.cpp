@@ -1,7 +1,7 @@
 #include "host/eval/evaluation.hpp"
 #include "host/denoise/denoiser.hpp"
 #include "host/io/picture/frame_file.hpp"
-#include "host/train/pairs.hpp"
+#include "host/pairs/folder.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>

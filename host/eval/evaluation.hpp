@@ -3,7 +3,7 @@
 #include "host/denoise/baselines.hpp"
 #include "host/denoise/model.hpp"
 #include "host/frame/metrics.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <functional>
 #include <string>

@@ -2,7 +2,7 @@
 #include "host/eval/chart.hpp"
 #include "host/frame/error_pictures.hpp"
 #include "host/io/picture/frame_file.hpp"
-#include "host/train/pairs.hpp"
+#include "host/pairs/folder.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>

@@ -1,14 +1,14 @@
 #include "host/experiment/ablation.hpp"
 #include "host/eval/evaluation_json.hpp"
-#include "host/experiment/settled_folder.hpp"
 #include "host/experiment/stage_times.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
-#include "host/train/pairs.hpp"
+#include "host/io/settled_folder.hpp"
+#include "host/pairs/folder.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
-#include "runtime/sha256.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -77,7 +77,7 @@ std::string shared_settings(const AblationSettings& s) {
         return all;
     };
     const TrainerConfig& t = s.training;
-    return ordered_json{{"clvr.format", "ablation/1"},
+    return ordered_json{{format_key, "ablation/1"},
                         {"train", contents(s.train)},
                         {"test", contents(s.test)},
                         {"steps", t.steps},
@@ -154,15 +154,16 @@ const std::vector<AblationRow>& ablation_rows() {
         Model m = default_settings();
         m.opacity_weight = false;
         m.channels.clear();
-        const auto add = [&](const std::string& name, const std::string& title, const std::vector<std::string>& channels) {
+        const auto add = [&](const std::string& name, const std::string& title, const auto& channels) {
             m.channels.insert(m.channels.end(), channels.begin(), channels.end());
             all.push_back({name, title, true, m});
         };
-        add("colour", "colour only", {"R", "G", "B"});
-        add("albedo", "+ albedo", {"albedo.R", "albedo.G", "albedo.B"});
-        add("normal", "+ normal", {"normal.X", "normal.Y", "normal.Z"});
-        add("depth", "+ depth", {"depth.Z"});
-        add("opacity", "+ opacity, deviation, half depth: full set", {"opacity.A", "depth.deviation", "depth.half"});
+        add("colour", "colour only", channel::colour);
+        add("albedo", "+ albedo", channel::albedo);
+        add("normal", "+ normal", channel::normal);
+        add("depth", "+ depth", std::array{channel::depth});
+        add("opacity", "+ opacity, deviation, half depth: full set",
+            std::array{channel::opacity, channel::depth_deviation, channel::depth_half});
         Model other = m;
         other.demodulation = false;
         all.push_back({"no-demodulation", "full set without demodulation", true, other});
@@ -252,7 +253,7 @@ std::vector<AblationResult> run_ablation(const AblationSettings& s, const std::s
                 times.seconds(row.name) / static_cast<double>(s.training.steps));
     }
 
-    ordered_json all{{"clvr.format", "ablation-results/1"}, {"device", device.facts().name}, {"version", provenance.version}};
+    ordered_json all{{format_key, "ablation-results/1"}, {"device", device.facts().name}, {"version", provenance.version}};
     if (!provenance.commit.empty()) all["commit"] = provenance.commit;
     all.update({{"command", provenance.command}, {"settings", ordered_json::parse(settings)}, {"rows", json_rows}});
     write_atomically(path("ablation.json"), json_text(all));

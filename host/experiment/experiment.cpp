@@ -1,16 +1,16 @@
 #include "host/experiment/experiment.hpp"
 #include "host/eval/evaluation_json.hpp"
 #include "host/experiment/measurement.hpp"
-#include "host/experiment/pairs_folder.hpp"
-#include "host/experiment/settled_folder.hpp"
 #include "host/experiment/stage_times.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/scene/scene_inputs.hpp"
+#include "host/io/settled_folder.hpp"
 #include "host/io/volume/dataset_path.hpp"
 #include "host/io/volume/volume_file.hpp"
+#include "host/pairs/rendering.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -114,7 +114,7 @@ private:
         std::vector<std::string> names;
         for (const Device& d : devices_)
             names.push_back(fmt::format("{} ({} {})", d.facts().name, d.facts().platform, d.facts().driver_version));
-        ordered_json results{{"clvr.format", "results/1"},
+        ordered_json results{{format_key, "results/1"},
                              {"scene", s_.name},
                              {"scale", s_.scale},
                              {"device", fmt::format("{}", fmt::join(names, " + "))},

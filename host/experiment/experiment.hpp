@@ -1,7 +1,7 @@
 // An experiment from nothing to a report, in stages: a run that was interrupted continues at the next start.
 #pragma once
 #include "host/experiment/experiment_settings.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <atomic>
 #include <functional>

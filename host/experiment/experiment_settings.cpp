@@ -2,6 +2,7 @@
 #include "host/io/model/model_file.hpp"
 #include "host/io/scene/scene_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -95,7 +96,7 @@ std::string to_json(const ExperimentSettings& s) {
     else
         training["epochs"] = t.epochs;
     training.update({{"learning_rate", t.learning_rate}, {"schedule", t.cosine ? "cosine" : "constant"}, {"seed", t.seed}});
-    const ordered_json all{{"clvr.format", "experiment/1"},
+    const ordered_json all{{format_key, "experiment/1"},
                            {"scene", s.name},
                            {"scale", s.scale},
                            {"volume", volume},

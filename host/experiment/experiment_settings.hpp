@@ -1,9 +1,9 @@
 // What an experiment is: all that decides its bits.
 #pragma once
 #include "host/denoise/model.hpp"
-#include "host/experiment/pairs_plan.hpp"
+#include "host/pairs/plan.hpp"
+#include "host/phantom/phantom.hpp"
 #include "host/train/trainer.hpp"
-#include "host/volume/phantom.hpp"
 
 #include <optional>
 #include <string>

@@ -1,8 +1,8 @@
 #include "host/experiment/measurement.hpp"
 #include "host/eval/evaluation_json.hpp"
-#include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ void write_measurements(const std::vector<Measurement>& measurements, const std:
         frame.update(to_json(m.evaluation));
         frames.push_back(frame);
     }
-    const std::string text = json_text(ordered_json{{"clvr.format", "evaluation/1"}, {"frames", frames}});
+    const std::string text = json_text(ordered_json{{format_key, "evaluation/1"}, {"frames", frames}});
     write_atomically(path, text);
 }
 
@@ -31,7 +31,7 @@ std::vector<Measurement> read_measurements(const std::string& path, const std::s
     if (!std::filesystem::exists(path)) return all;
     try {
         const auto j = ordered_json::parse(read_text(path));
-        if (j.at("clvr.format") != "evaluation/1") throw Error(ErrorKind::input, "is of another format; expected evaluation/1", path);
+        if (j.at(format_key) != "evaluation/1") throw Error(ErrorKind::input, "is of another format; expected evaluation/1", path);
         for (const auto& f : j.at("frames"))
             all.push_back(
                 {f.at("spp").get<int>(), f.at("frame").get<int>(), parse_baselines(f.at("baselines")), parse_evaluation(f, test_folder)});

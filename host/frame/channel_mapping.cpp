@@ -148,7 +148,7 @@ std::vector<std::string> map_known_channels(Frame& frame) {
             name = std::min_element(found.begin(), found.end())->second;
             pairs = taken(frame, name, pass.name);
         } else if (depth && frame.has("Z")) {
-            pairs = {{"Z", "depth.Z"}};
+            pairs = {{"Z", channel::depth}};
         } else {
             continue;
         }

@@ -1,6 +1,6 @@
 #include "host/frame/error_pictures.hpp"
 #include "host/frame/flip.hpp"
-#include "host/frame/tonemap.hpp"
+#include "host/frame/srgb.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ constexpr int intervals = 8;
 double magma(double v, int c) {
     const double at = std::clamp(v, 0.0, 1.0) * intervals;
     const int k = std::min(static_cast<int>(at), intervals - 1);
-    return srgb_decoded((stations[k][c] + (at - k) * (stations[k + 1][c] - stations[k][c])) / 255);
+    return srgb_decode((stations[k][c] + (at - k) * (stations[k + 1][c] - stations[k][c])) / 255);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 #include "host/frame/film.hpp"
-#include "runtime/dealer.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 namespace clvr {
 

@@ -1,7 +1,7 @@
 // A picture with its channels on a device.
 #pragma once
 #include "host/frame/frame.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <algorithm>
 #include <string>
@@ -23,13 +23,15 @@ public:
     Device& device() { return device_; }
     bool is_on(const Device& device) const;
 
+    /// Of the planes, in order.
+    const std::vector<std::string>& names() const { return names_; }
     /// Number of the plane, -1 when there is none.
     int find(const std::string& name) const {
         const auto at = std::find(names_.begin(), names_.end(), name);
         return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
     }
     /// Number of the first of the planes `names`, which lie next to each other in this order; makes them (what they hold is undefined)
-    /// behind the others where none is there. Throws Error{memory}; Error{internal} when they lie otherwise.
+    /// behind the others where none is there. Throws Error{device_memory}; Error{internal} when they lie otherwise.
     int require(const std::vector<std::string>& names);
     /// [planes][height * width]
     Buffer& planes() { return planes_; }

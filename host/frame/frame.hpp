@@ -1,5 +1,7 @@
 // A finished picture with its channels, as the renderer makes it and EXR files hold it.
 #pragma once
+#include "host/frame/names.hpp"
+
 #include <map>
 #include <optional>
 #include <string>
@@ -8,7 +10,7 @@
 namespace clvr {
 
 /// The channels of a picture's colour.
-inline constexpr const char* colour_channels[] = {"R", "G", "B"};
+inline constexpr channel::Names colour_channels = channel::colour;
 
 /// Part of a picture [pixels].
 struct Region {
@@ -33,9 +35,8 @@ struct Frame {
     std::optional<Region> display; ///< the whole picture, where that is not the frame itself (OpenEXR's display window)
     float pixel_aspect = 1;        ///< width of a pixel over its height
     std::map<std::string, std::vector<float>> channels;
-    std::map<std::string, std::string>
-        attributes; ///< provenance: "clvr.volume.sha256", "clvr.scene", "clvr.seed", "clvr.spp", "clvr.device", ...
-    std::map<std::string, Attribute> further; ///< of a file that was read: chromaticities, worldToCamera, ...
+    std::map<std::string, std::string> attributes; ///< provenance, by the names of names.hpp
+    std::map<std::string, Attribute> further;      ///< of a file that was read: chromaticities, worldToCamera, ...
     std::vector<std::string> notes; ///< what its reader understood in a way that may surprise, a sentence each; commands print them
 
     std::size_t pixels() const { return static_cast<std::size_t>(width) * height; }
@@ -63,9 +64,9 @@ struct Frame {
     }
     /// The opacity with which the picture is shown: A, or null where the picture is opaque. It is opaque when it has no A, and when it lies
     /// over a background (background.R ...; A is the camera rays' opacity there, too).
-    const std::vector<float>* shown_alpha() const { return has("background.R") ? nullptr : find("A"); }
+    const std::vector<float>* shown_alpha() const { return has(channel::background[0]) ? nullptr : find(channel::alpha); }
     /// The best that is known of the camera rays' opacity: opacity.A (free of noise), else A, else null.
-    const std::vector<float>* opacity() const { return has("opacity.A") ? find("opacity.A") : find("A"); }
+    const std::vector<float>* opacity() const { return has(channel::opacity) ? find(channel::opacity) : find(channel::alpha); }
 };
 
 /// The frame cut to shown(), with 0 in all channels where it has no pixels, and that part's corner as (0, 0). Throws Error{input}

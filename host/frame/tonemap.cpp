@@ -54,7 +54,7 @@ ToneCurve::ToneCurve(const Tonemap& tonemap) : curve_(nullptr), gain_(std::exp2(
 }
 
 Rgb ToneCurve::operator()(const Rgb& straight) const {
-    return curve_({gain_ * displayable(straight[0]), gain_ * displayable(straight[1]), gain_ * displayable(straight[2])});
+    return curve_({displayable(gain_ * straight[0]), displayable(gain_ * straight[1]), displayable(gain_ * straight[2])});
 }
 
 Frame tonemapped(const Frame& frame, const Tonemap& tonemap) {

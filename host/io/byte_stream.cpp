@@ -1,7 +1,7 @@
 #include "host/io/byte_stream.hpp"
 #include "host/io/file_roles.hpp"
 #include "runtime/error.hpp"
-#include "runtime/parallel.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -39,7 +39,8 @@ struct ByteStream::Inflater {
     bool ended = false;
 
     Inflater() {
-        if (inflateInit2(&z, 15 + 32) != Z_OK) throw Error(ErrorKind::memory, "zlib cannot start"); // 15 + 32: gzip or zlib, by its header
+        if (inflateInit2(&z, 15 + 32) != Z_OK)
+            throw Error(ErrorKind::host_memory, "zlib cannot start"); // 15 + 32: gzip or zlib, by its header
     }
     ~Inflater() { inflateEnd(&z); }
 };

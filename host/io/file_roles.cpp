@@ -1,7 +1,7 @@
 #include "host/io/file_roles.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/volume/dataset_path.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>

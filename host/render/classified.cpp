@@ -1,4 +1,5 @@
 #include "host/render/classified.hpp"
+#include "host/appearance/majorants.hpp"
 
 #include <algorithm>
 

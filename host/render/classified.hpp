@@ -1,6 +1,7 @@
 // A volume as a transfer function shows it, on the host: independent of the device.
 #pragma once
-#include "host/volume/bricks.hpp"
+#include "host/appearance/transfer_function.hpp"
+#include "host/volume/majorant_grid.hpp"
 
 #include <optional>
 #include <utility>

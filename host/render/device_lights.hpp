@@ -1,8 +1,8 @@
 // View and lights on one device: the arguments LIGHT_ARGS of the kernels.
 #pragma once
-#include "host/render/environment.hpp"
+#include "host/appearance/environment.hpp"
 #include "kernels/shared/render_params.h"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 namespace clvr {
 

@@ -1,7 +1,7 @@
 #include "host/render/device_volume.hpp"
-#include "host/render/coarse_opacity.hpp"
 #include "host/render/tunables.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace clvr {
@@ -96,9 +96,17 @@ DeviceAppearance::DeviceAppearance(Device& device, const Classified& c, const sh
     bricks.append_to(volume);
     device.launch(kernel, cells, kernel.group(static_cast<std::size_t>(device.tunable(tunables::shade_group))), {}, volume, visible_before,
                   coarse_);
-    std::vector<float> mean = device.download<float>(coarse_, cells.x * cells.y * cells.z);
-    mark_distances(mean, params.coarse);
-    device.write(coarse_, mean.data(), mean.size() * sizeof(float));
+    // The greatest of the distances along the axes is found one axis after the other.
+    Buffer other = device.buffer(coarse_.bytes(), "coarse opacity");
+    const int width = packet_width(device);
+    Kernel distances = device.kernel("volume/distances", {{"CLVR_WIDTH", std::to_string(width)}});
+    const Range packets{(cells.x + static_cast<std::size_t>(width) - 1) / static_cast<std::size_t>(width), cells.y, cells.z};
+    const float farthest = static_cast<float>(std::max({params.coarse.x, params.coarse.y, params.coarse.z}) + 1);
+    for (cl_int axis = 0; axis < 3; ++axis) {
+        device.launch(distances, packets, distances.group(packet_group(device)), {}, coarse_, params.coarse, axis, farthest, other);
+        std::swap(coarse_, other);
+    }
+    device.finish(); // before `other` goes
 }
 
 void DeviceAppearance::append_to(BufferList& list) const {

@@ -30,8 +30,8 @@ std::vector<shared::KeyLight> key_lights(const shared::RenderParams& p, const Sk
     return keys;
 }
 
-SkyLight::SkyLight(Device& device, const DeviceVolume& volume, const SkySplit& sky) {
-    constexpr std::int64_t most_corners = 1 << 16;
+SkyLight::SkyLight(Device& device, const DeviceVolume& volume, const SkySplit& sky, bool draft) : draft_(draft) {
+    const std::int64_t most_corners = draft ? 1 << 12 : 1 << 16;
     const shared::VolumeParams& v = volume.params();
     // Rows of to_index are the axes' directions over their spacings.
     const auto spacing = [](const shared::float4& row) { return 1 / std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z); };

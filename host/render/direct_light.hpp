@@ -1,7 +1,7 @@
 // Direct light for the features on one device: what the marcher needs for it.
 #pragma once
+#include "host/appearance/sky_split.hpp"
 #include "host/render/device_volume.hpp"
-#include "host/render/sky_split.hpp"
 
 namespace clvr {
 
@@ -12,12 +12,15 @@ std::vector<shared::KeyLight> key_lights(const shared::RenderParams& params, con
 /// depends on the volume, its classification and the environment, not on the camera.
 class SkyLight {
 public:
-    /// Marches from the corners near anything visible. Throws Error{memory}.
-    SkyLight(Device& device, const DeviceVolume& volume, const SkySplit& sky);
+    /// Marches from the corners near anything visible. A `draft` has at most 2^12 corners and takes a tenth of the time. Throws
+    /// Error{device_memory}.
+    SkyLight(Device& device, const DeviceVolume& volume, const SkySplit& sky, bool draft = false);
+    bool is_draft() const { return draft_; }
     const shared::SkyGrid& grid() const { return grid_; }
     const Buffer& light() const { return light_; } ///< [corners * CLVR_SKY_TERMS] float4, x fastest
 
 private:
+    bool draft_;
     shared::SkyGrid grid_;
     Buffer light_;
 };

@@ -32,6 +32,9 @@ public:
     /// Pixels of one launch: few enough to keep it below about 100 ms. (Fewer where the light's sums would not fit.)
     static std::uint32_t pixels_per_launch(const Device& device);
 
+    /// Of its own buffers.
+    std::size_t bytes() const { return planes_.bytes() + sums_.bytes(); }
+
 private:
     Marcher(Device& device, const DeviceVolume& volume, const DeviceLights& light, const KeyLights* keys, const SkyLight* sky, March march,
             int rays);

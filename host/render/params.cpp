@@ -1,4 +1,5 @@
 #include "host/render/params.hpp"
+#include "host/appearance/majorants.hpp"
 #include "host/volume/vec.hpp"
 #include "runtime/error.hpp"
 

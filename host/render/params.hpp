@@ -1,7 +1,8 @@
 // From a scene to the structs that the kernels read: computed in double, rounded once.
 #pragma once
-#include "host/render/environment.hpp"
+#include "host/appearance/environment.hpp"
 #include "host/render/view.hpp"
+#include "host/volume/brick_layout.hpp"
 #include "kernels/shared/render_params.h"
 #include "kernels/shared/volume_params.h"
 

@@ -1,7 +1,7 @@
 // Everything that decides a picture, besides the voxels: what a scene JSON holds.
 #pragma once
+#include "host/appearance/transfer_function.hpp"
 #include "host/frame/tonemap.hpp"
-#include "host/volume/transfer_function.hpp"
 #include "host/volume/vec.hpp"
 #include "host/volume/volume_read_options.hpp"
 

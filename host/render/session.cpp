@@ -2,8 +2,8 @@
 #include "host/render/params.hpp"
 #include "host/render/pixel_numbers.hpp"
 #include "host/render/tunables.hpp"
-#include "runtime/host_memory.hpp"
-#include "runtime/size.hpp"
+#include "runtime/system/host_memory.hpp"
+#include "runtime/system/size.hpp"
 
 #include <algorithm>
 #include <array>
@@ -25,13 +25,14 @@ std::vector<Double3> outline_of(const Classified& c, const Scene& scene) {
                            clip_box_index(scene, *c.voxels));
 }
 
-/// Throws Error{memory} when the picture's own buffers would not fit into what the host has left: the kernel would end the process instead.
+/// Throws Error{host_memory} when the picture's own buffers would not fit into what the host has left: the kernel would end the process
+/// instead.
 void refuse_what_host_memory_cannot_hold(int width, int height) {
     const double wanted =
         static_cast<double>(width) * height * (64 + 4 * 4 + 3 * 4 + 2 * 4 * march_planes(March::features)); // sums twice, channels, planes
     const std::size_t left = available_memory();
     if (wanted > static_cast<double>(left))
-        throw Error(ErrorKind::memory,
+        throw Error(ErrorKind::host_memory,
                     "a picture of " + std::to_string(width) + "x" + std::to_string(height) + " pixels takes " +
                         size_text(static_cast<std::size_t>(wanted)) + " of host memory, " + size_text(left) +
                         " are left; try a smaller one",
@@ -59,6 +60,14 @@ std::array<float, 2> variance_scale(int samples) {
 
 } // namespace
 
+/// A marcher, and what it was made for.
+struct RenderSession::Marching {
+    March kind;
+    int rays;
+    bool lit;
+    Marcher marcher;
+};
+
 /// One device's share of the work.
 struct RenderSession::Worker {
     Device device;
@@ -67,8 +76,12 @@ struct RenderSession::Worker {
     std::optional<KeyLights> keys;       // of the view
     std::shared_ptr<const SkyLight> sky; // of all views; shared as the volume is
     std::optional<PathTracer> tracer;
-    std::optional<PixelSums> before, after; // of a portion, while the picture is kept on the host
+    std::optional<Marching> marching;       // kept for the next view
+    std::optional<PixelSums> before, after; // of a chunk, while the picture is kept on the host
     bool compared = false;                  // with the others
+
+    /// Before what they refer to goes.
+    void forget_passes() { tracer.reset(), marching.reset(); }
 };
 
 /// The picture on the host.
@@ -80,8 +93,8 @@ struct RenderSession::HostSums {
     Frame channels;
 };
 
-RenderSession::RenderSession(const std::vector<Device>& devices) : dealer_(devices) {
-    for (const Device& d : devices) workers_.push_back(std::make_unique<Worker>(Worker{d, {}, {}, {}, {}, {}, {}, {}, false}));
+RenderSession::RenderSession(const std::vector<Device>& devices) : scheduler_(devices) {
+    for (const Device& d : devices) workers_.push_back(std::make_unique<Worker>(Worker{d, {}, {}, {}, {}, {}, {}, {}, {}, false}));
 }
 
 RenderSession::RenderSession(const std::vector<Device>& devices, const PreparedVolume& volume, const Scene& scene,
@@ -95,7 +108,7 @@ RenderSession::~RenderSession() = default;
 void RenderSession::set_volume(const PreparedVolume& volume) {
     volume_ = &volume;
     restart();
-    for (const std::size_t k : dealer_.left()) workers_[k]->tracer.reset(), workers_[k]->sky.reset(), workers_[k]->volume.reset();
+    for (const std::size_t k : scheduler_.left()) workers_[k]->forget_passes(), workers_[k]->sky.reset(), workers_[k]->volume.reset();
     if (classified_.voxels) set_appearance(Appearance(scene_)); // another volume under the same one
 }
 
@@ -109,9 +122,9 @@ void RenderSession::set_appearance(const Appearance& appearance) {
         warnings_.push_back("nothing is visible: the transfer function gives every voxel the opacity 0; try another --tf, or `clvr info` "
                             "for the range of the values");
     outline_ = outline_of(classified_, scene_);
-    for (const std::size_t k : dealer_.left()) workers_[k]->sky.reset();
+    for (const std::size_t k : scheduler_.left()) workers_[k]->marching.reset(), workers_[k]->sky.reset();
     std::vector<std::size_t> done; // of the devices, in this call
-    dealer_.each([&](std::size_t k) {
+    scheduler_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
         const auto params = [&](const BrickLayout& layout) {
             return volume_params(scene_, volume_->voxels, volume_->grid, classified_.table, layout);
@@ -137,7 +150,7 @@ void RenderSession::set_lights(const Light& light, const EnvironmentTables& envi
     restart();
     view_set_ = false;
     sky_.reset();
-    for (const std::size_t k : dealer_.left()) workers_[k]->tracer.reset(), workers_[k]->sky.reset(), workers_[k]->lights.reset();
+    for (const std::size_t k : scheduler_.left()) workers_[k]->forget_passes(), workers_[k]->sky.reset(), workers_[k]->lights.reset();
 }
 
 void RenderSession::set_size(int width, int height) {
@@ -146,8 +159,8 @@ void RenderSession::set_size(int width, int height) {
     restart();
     view_set_ = false;
     numbers_ = pixel_numbers(width, height);
-    film_.reset(), host_.reset(), sums_.reset(), next_.reset();
-    for (const std::size_t k : dealer_.left()) workers_[k]->tracer.reset();
+    film_.reset(), host_.reset(), sums_.reset(), next_.reset(), display_.reset();
+    for (const std::size_t k : scheduler_.left()) workers_[k]->tracer.reset();
 }
 
 void RenderSession::set_view(const Viewpoint& view, bool steady) {
@@ -175,7 +188,7 @@ void RenderSession::restart() {
 
 std::vector<Device> RenderSession::devices() const {
     std::vector<Device> devices;
-    for (const std::size_t k : dealer_.left()) devices.push_back(workers_[k]->device);
+    for (const std::size_t k : scheduler_.left()) devices.push_back(workers_[k]->device);
     return devices;
 }
 
@@ -183,29 +196,32 @@ std::vector<Device> RenderSession::devices() const {
 void RenderSession::prepare_view() {
     if (view_set_) return;
     params_ = render_params(scene_, volume_->voxels, resolve_view(scene_, outline_, steady_), environment_);
-    dealer_.each([&](std::size_t k) {
+    scheduler_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
         if (w.lights)
             w.lights->set_view(w.device, params_);
         else
             w.lights.emplace(w.device, params_, environment_);
     });
-    view_set_ = true;
+    view_set_ = true, behind_set_ = false;
 }
 
 /// The key lights of this view, and after another volume, appearance or environment the sky's light in the volume.
-void RenderSession::prepare_light() {
+void RenderSession::prepare_light(bool draft) {
     if (!sky_) sky_ = split_sky(params_, environment_);
     const std::vector<shared::KeyLight> keys = key_lights(params_, *sky_);
-    dealer_.each([&](std::size_t k) {
+    scheduler_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
-        if (w.keys && w.keys->count() == static_cast<int>(keys.size()))
+        if (w.keys && w.keys->count() == static_cast<int>(keys.size())) {
             w.keys->set(w.device, keys);
-        else
+        } else {
+            w.marching.reset();
             w.keys.emplace(w.device, keys);
-        for (const std::size_t other : dealer_.left())
+        }
+        if (w.sky && w.sky->is_draft() && !draft) w.marching.reset(), w.sky.reset();
+        for (const std::size_t other : scheduler_.left())
             if (other < k && !w.sky && workers_[other]->volume == w.volume) w.sky = workers_[other]->sky;
-        if (!w.sky) w.sky = std::make_shared<SkyLight>(w.device, *w.volume, *sky_);
+        if (!w.sky) w.sky = std::make_shared<SkyLight>(w.device, *w.volume, *sky_, draft);
     });
 }
 
@@ -215,9 +231,9 @@ void RenderSession::prepare_picture() {
     // Beauty and variance, features, noisy input, known light, noise level, and some for other filters.
     constexpr std::size_t planes = 7 + 16 + 4 + 3 + 1 + 9;
     constexpr std::size_t bytes_per_pixel = 64 + 4 * planes; // the sums twice
-    Device& first = workers_[dealer_.left().front()]->device;
+    Device& first = workers_[scheduler_.left().front()]->device;
     const std::size_t plane_bytes = std::size_t{4} * scene_.width * scene_.height;
-    if (dealer_.left().size() == 1 && numbers_ * bytes_per_pixel <= first.free_bytes() / 2 &&
+    if (scheduler_.left().size() == 1 && numbers_ * bytes_per_pixel <= first.free_bytes() / 2 &&
         planes * plane_bytes <= first.max_alloc_bytes()) {
         film_ = std::make_unique<Film>(first, scene_.width, scene_.height, planes);
         return;
@@ -228,9 +244,9 @@ void RenderSession::prepare_picture() {
 
 /// Each device traces the same few pixels in the picture's middle: one that computes other bits than the others must not mix with them.
 void RenderSession::compare_devices() {
-    if (std::exchange(workers_[dealer_.left().front()]->compared, true)) return;
+    if (std::exchange(workers_[scheduler_.left().front()]->compared, true)) return;
     const std::uint32_t count = std::min(256u, numbers_), first = (numbers_ - count) / 2;
-    dealer_.compare("pictures", [&](std::size_t k) {
+    scheduler_.compare("pictures", [&](std::size_t k) {
         Device& d = workers_[k]->device;
         const PixelSums zero(d, count);
         PixelSums sums(d, count);
@@ -247,15 +263,16 @@ void RenderSession::compare_devices() {
 /// Adds samples to all pixels. False when cancelled: the sums stay as they were.
 bool RenderSession::trace_pass(int samples, int wanted, const RenderControl& control) {
     const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
-    std::vector<Dealer::Portion> portions(workers_.size());
-    for (const std::size_t k : dealer_.left()) {
+    std::vector<Scheduler::ChunkSize> chunk_sizes(workers_.size());
+    for (const std::size_t k : scheduler_.left()) {
         const Worker& w = *workers_[k];
         const std::uint32_t wave = w.tracer->pixels_per_wave(static_cast<std::uint32_t>(samples)), least = std::max(16u, wave / 256 * 16);
-        portions[k] = {least, std::max(least, static_cast<std::uint32_t>(w.device.tunable(tunables::tile_pixels, static_cast<int>(wave))))};
+        chunk_sizes[k] = {least,
+                          std::max(least, static_cast<std::uint32_t>(w.device.tunable(tunables::tile_pixels, static_cast<int>(wave))))};
     }
     const auto before = static_cast<std::uint32_t>(samples_), added = static_cast<std::uint32_t>(samples);
     std::uint32_t done = 0;
-    dealer_.deal("trace", numbers_, samples, portions, [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
+    scheduler_.run("trace", numbers_, samples, chunk_sizes, [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
         Worker& w = *workers_[k];
         if (film_) {
             if (!w.tracer->trace(first, count, before, added, *sums_, *next_, first, cancelled)) return;
@@ -286,7 +303,7 @@ int RenderSession::accumulate(int samples, const RenderControl& control) {
     const auto begin = clock::now();
     prepare_view();
     prepare_picture();
-    dealer_.each([&](std::size_t k) {
+    scheduler_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
         if (!w.tracer) w.tracer.emplace(w.device, *w.volume, *w.lights, numbers_);
     });
@@ -320,18 +337,18 @@ int RenderSession::accumulate(int samples, const RenderControl& control) {
     return samples_;
 }
 
-std::vector<Dealer::Portion> RenderSession::march_portions() const {
-    std::vector<Dealer::Portion> portions(workers_.size());
-    for (const std::size_t k : dealer_.left()) {
+std::vector<Scheduler::ChunkSize> RenderSession::march_chunk_sizes() const {
+    std::vector<Scheduler::ChunkSize> chunk_sizes(workers_.size());
+    for (const std::size_t k : scheduler_.left()) {
         const std::uint32_t most = Marcher::pixels_per_launch(workers_[k]->device);
-        portions[k] = {most / 16, most};
+        chunk_sizes[k] = {most / 16, most};
     }
-    return portions;
+    return chunk_sizes;
 }
 
 bool RenderSession::march_features(int rays, const RenderControl& control) {
     const std::vector<std::string> wanted = march_channels(March::features, control.light);
-    if (rays_ == rays && marched_.size() >= wanted.size()) {
+    if (rays_ == rays && marched_.size() >= wanted.size() && (!draft_ || control.draft || !control.light)) {
         marched_.resize(wanted.size());
         return true;
     }
@@ -346,30 +363,35 @@ bool RenderSession::march(March kind, int rays, bool lit, const RenderControl& c
     const std::atomic<bool>& cancelled = control.cancelled ? *control.cancelled : never;
     prepare_view();
     prepare_picture();
-    if (lit) prepare_light();
+    if (lit) prepare_light(control.draft);
     const std::vector<std::string> names = march_channels(kind, lit);
     // The planes of all features lie together, whichever are wanted first.
     if (film_) film_->require(kind == March::features ? march_channels(kind, true) : beauty_channels);
-    std::vector<std::optional<Marcher>> marchers(workers_.size());
-    dealer_.each([&](std::size_t k) {
+    scheduler_.each([&](std::size_t k) {
         Worker& w = *workers_[k];
+        if (w.marching && w.marching->kind == kind && w.marching->rays == rays && w.marching->lit == lit) return;
+        w.marching.reset(); // its memory goes before the next one's is taken
         if (lit)
-            marchers[k].emplace(w.device, *w.volume, *w.lights, *w.keys, *w.sky, rays);
+            w.marching.emplace(Marching{kind, rays, lit, Marcher(w.device, *w.volume, *w.lights, *w.keys, *w.sky, rays)});
         else
-            marchers[k].emplace(w.device, *w.volume, *w.lights, kind, rays);
+            w.marching.emplace(Marching{kind, rays, lit, Marcher(w.device, *w.volume, *w.lights, kind, rays)});
     });
     std::vector<float> planes(film_ ? 0 : names.size() * numbers_);
-    dealer_.deal(kind == March::features ? "features" : "march", numbers_, 1, march_portions(),
-                 [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
-                     if (cancelled) return;
-                     if (film_)
-                         marchers[k]->run(first, count, *film_, film_->find(names.front()));
-                     else
-                         marchers[k]->run(first, count, planes, numbers_, first);
-                     const std::lock_guard lock(progress_);
-                     if (control.progress) control.progress({0, samples_});
-                 });
-    if (film_) film_->device().finish(); // before the marchers' buffers go
+    scheduler_.run(kind == March::features ? "features" : "march", numbers_, 1, march_chunk_sizes(),
+                   [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
+                       if (cancelled) return;
+                       Marcher& marcher = workers_[k]->marching->marcher;
+                       if (film_)
+                           marcher.run(first, count, *film_, film_->find(names.front()));
+                       else
+                           marcher.run(first, count, planes, numbers_, first);
+                       const std::lock_guard lock(progress_);
+                       if (control.progress) control.progress({0, samples_});
+                   });
+    if (film_) film_->device().finish();          // so that a failure is known here
+    for (const std::size_t k : scheduler_.left()) // kept for the next view where memory is not short
+        if (workers_[k]->marching && workers_[k]->marching->marcher.bytes() > workers_[k]->device.free_bytes() / 8)
+            workers_[k]->marching.reset();
     if (cancelled) return false;
     for (std::size_t p = 0; p < names.size() && !film_; ++p) {
         auto& channel = host_->channels.channel(names[p]);
@@ -377,7 +399,7 @@ bool RenderSession::march(March kind, int rays, bool lit, const RenderControl& c
         for_pixels(scene_.width, scene_.height, [&](std::uint32_t i, std::size_t at) { channel[at] = plane[i]; });
     }
     if (kind == March::features)
-        marched_ = names, rays_ = rays;
+        marched_ = names, rays_ = rays, draft_ = lit && workers_[scheduler_.left().front()]->sky->is_draft();
     else
         samples_ = resolved_ = rays, traced_ = false;
     return true;
@@ -433,6 +455,32 @@ Frame RenderSession::frame(const Background& background, bool beauty_alone) {
     return frame;
 }
 
+DisplayPixels RenderSession::picture(const Background& background, const Tonemap& tonemap, bool alpha) {
+    if (samples_ == 0) throw Error(ErrorKind::internal, "there are no samples yet", "RenderSession::picture");
+    if (!film_) return display_pixels(frame(background, true), tonemap, alpha);
+    resolve();
+    Device& device = film_->device();
+    if (!display_) display_.emplace(device);
+    Behind behind;
+    if (background.kind == Background::Kind::color) {
+        const auto& c = background.color;
+        behind.opaque = true;
+        behind.colour = {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), 0};
+    } else if (background.kind == Background::Kind::environment) {
+        const std::size_t bytes = numbers_ * sizeof(shared::float4);
+        if (behind_.bytes() != bytes) behind_ = device.buffer(bytes, "background");
+        if (!std::exchange(behind_set_, true)) see_environment(*workers_[scheduler_.left().front()], 0, numbers_, behind_);
+        behind.picture = &behind_;
+    }
+    return display_->show(*film_, behind, tonemap, alpha);
+}
+
+/// The environment behind the pixels [count], float4 each.
+void RenderSession::see_environment(Worker& w, std::uint32_t first, std::uint32_t count, Buffer& out) {
+    Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
+    w.device.launch(kernel, {count}, kernel.group(64), {}, w.lights->arguments(), first, count, out);
+}
+
 void RenderSession::lay_background(Frame& frame, const Background& background) {
     if (background.kind == Background::Kind::transparent) return;
     std::vector<shared::float4> under(numbers_);
@@ -441,11 +489,10 @@ void RenderSession::lay_background(Frame& frame, const Background& background) {
         std::fill(under.begin(), under.end(),
                   shared::float4{static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), 0});
     } else {
-        dealer_.deal("background", numbers_, 1, march_portions(), [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
+        scheduler_.run("background", numbers_, 1, march_chunk_sizes(), [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
             Worker& w = *workers_[k];
-            Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
             Buffer out = w.device.buffer(count * sizeof(shared::float4), "background");
-            w.device.launch(kernel, {count}, kernel.group(64), {}, w.lights->arguments(), first, count, out);
+            see_environment(w, first, count, out);
             w.device.read(out, &under[first], count * sizeof(shared::float4));
         });
     }

@@ -1,16 +1,17 @@
 // A volume on one device or several, ready to be seen: what changes is set alone, samples are added where they stopped, and the picture
 // stays on the device until somebody wants its pixels.
 #pragma once
+#include "host/appearance/environment.hpp"
+#include "host/appearance/sky_split.hpp"
 #include "host/frame/film.hpp"
 #include "host/frame/frame.hpp"
 #include "host/render/classified.hpp"
-#include "host/render/environment.hpp"
+#include "host/render/display.hpp"
 #include "host/render/marcher.hpp"
 #include "host/render/path_tracer.hpp"
 #include "host/render/scene.hpp"
-#include "host/render/sky_split.hpp"
-#include "runtime/dealer.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include <atomic>
 #include <functional>
@@ -29,6 +30,7 @@ struct RenderProgress {
 
 struct RenderControl {
     bool light = true;                                   ///< features have light.* channels (the others' bits do not depend on it)
+    bool draft = false;                                  ///< sky light that must be found anew may be coarse: for a picture in motion
     double seconds = 0;                                  ///< stop adding passes when they would end later than this; 0: no limit
     const std::atomic<bool>* cancelled = nullptr;        ///< set by Ctrl-C: the passes finished so far are the result
     std::function<void(const RenderProgress&)> progress; ///< called from the calling thread or a worker, now and then
@@ -76,6 +78,10 @@ public:
     /// unless that is transparent. `beauty_alone`: without features, variances and the noisy picture.
     Frame frame(const Background& background = {}, bool beauty_alone = false);
 
+    /// The same picture over the background as a display shows it. From the device come 4 bytes a pixel, where the picture is kept there.
+    /// With `alpha` as for display_pixels.
+    DisplayPixels picture(const Background& background, const Tonemap& tonemap, bool alpha);
+
     /// Composites R G B of this picture, and noisy.R G B beside it, over the background: C + (1 - A) B, with B in background.R/G/B.
     void lay_background(Frame& frame, const Background& background);
 
@@ -85,9 +91,10 @@ public:
     std::vector<Device> devices() const;
 
 private:
+    struct Marching;
     struct Worker;
     struct HostSums;
-    Dealer dealer_;
+    Scheduler scheduler_;
     std::vector<std::unique_ptr<Worker>> workers_; // by device
     std::mutex progress_;
     const PreparedVolume* volume_ = nullptr;
@@ -107,18 +114,23 @@ private:
     bool traced_ = false;                  // the samples are paths, not a march's rays
     std::vector<std::string> marched_;     // features that are there
     int rays_ = 0;                         // a pixel, of the features
+    bool draft_ = false;                   // the features' sky light is a draft
     std::unique_ptr<Film> film_;           // where the picture is kept on the device,
     std::optional<PixelSums> sums_, next_; // with the sums of whole passes, and of the pass that runs
     std::unique_ptr<HostSums> host_;       // else where it is kept on the host
+    std::optional<Display> display_;       // of the film
+    Buffer behind_;                        // the environment as the view shows it, for the display
+    bool behind_set_ = false;
 
     void prepare_view();
-    void prepare_light();
+    void prepare_light(bool draft);
     void prepare_picture();
     void compare_devices();
     bool trace_pass(int samples, int wanted, const RenderControl& control);
     bool march(March kind, int rays, bool lit, const RenderControl& control);
-    std::vector<Dealer::Portion> march_portions() const;
+    std::vector<Scheduler::ChunkSize> march_chunk_sizes() const;
     void resolve();
+    void see_environment(Worker& w, std::uint32_t first, std::uint32_t count, Buffer& out);
 };
 
 /// Brings a session to a scene of which it has set all but spp, mode and features: features when wanted, then samples or a march. Throws

@@ -45,7 +45,7 @@ inline constexpr Tunable wave_paths{"wave_paths",
                                     {1 << 15, 1 << 16, 1 << 17, 1 << 18, 1 << 20, 1 << 21, 1 << 22, 1 << 23},
                                     true};
 
-/// Pixels of a tile that a device takes of a picture; by default those of a wave. How tiles are dealt depends on the picture and on how
+/// Pixels of a tile that a device takes of a picture; by default those of a wave. How tiles are shared depends on the picture and on how
 /// many devices there are, so the tuner does not try it.
 inline constexpr Tunable tile_pixels{
     "tile_pixels", AllowedValues::whole(16, 1 << 30), [](const DeviceFacts&, const Tunables&) { return 1 << 30; }, {}, {}, {}};

@@ -1,7 +1,7 @@
 // The camera as the kernels need it, and its framing.
 #pragma once
+#include "host/appearance/visible_box.hpp"
 #include "host/render/scene.hpp"
-#include "host/volume/bricks.hpp"
 
 #include <vector>
 

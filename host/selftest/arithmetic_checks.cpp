@@ -2,8 +2,8 @@
 #include "host/selftest/check.hpp"
 #include "host/selftest/golden_values.hpp"
 #include "kernels/shared/struct_fields.h"
-#include "runtime/sha256.hpp"
-#include "runtime/trust.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/trust/trust.hpp"
 
 #include <fmt/format.h>
 

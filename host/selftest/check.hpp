@@ -1,6 +1,6 @@
 // The checks of the self-test, each a small function: does this device compute what clvr's results rest on?
 #pragma once
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <string>
 #include <vector>
@@ -24,7 +24,7 @@ struct Check {
 const std::vector<Check>& checks();
 
 // arithmetic_checks.cpp
-Outcome check_trust(Device& device);     ///< IEEE arithmetic (runtime/trust.hpp), probed anew
+Outcome check_trust(Device& device);     ///< IEEE arithmetic (runtime/trust/trust.hpp), probed anew
 Outcome check_functions(Device& device); ///< bits of kernels/lib/math.clh at every packet width
 Outcome check_random(Device& device);    ///< published vectors at every packet width
 Outcome check_layout(Device& device);    ///< both compilers agree on the shared structs

@@ -111,20 +111,19 @@ Frame golden_noisy_frame() {
         return static_cast<float>(k >> 8) * 0x1p-24f;
     };
     for (const auto& name : reference_channels()) f.channel(name);
-    for (const char* name : {"A", "opacity.A", "variance.R", "variance.G", "variance.B"}) f.channel(name);
+    for (const char* name : {channel::alpha, channel::opacity}) f.channel(name);
+    for (const char* name : channel::variance) f.channel(name);
     for (int y = 0; y < f.height; ++y)
         for (int x = 0; x < f.width; ++x) {
             const std::size_t i = static_cast<std::size_t>(y) * f.width + x;
             const int dx = 2 * x - f.width, dy = 2 * y - f.height;
             const bool disc = dx * dx + dy * dy < 1300;
-            f.channel("A")[i] = f.channel("opacity.A")[i] = disc ? 1.0f : (x + y) % 3 == 0 ? 0.25f : 0.0f;
-            for (const char* c : {"R", "G", "B"}) f.channel(c)[i] = f.at("A")[i] * 2 * noise() * noise();
-            for (const char* c : {"variance.R", "variance.G", "variance.B"}) f.channel(c)[i] = f.at("A")[i] * noise() * 0.125f;
-            for (const char* c : {"albedo.R", "albedo.G", "albedo.B"})
-                f.channel(c)[i] = disc ? 0.25f + 0.5f * static_cast<float>(x / 7 % 2) : 1;
-            for (const char* c : {"normal.X", "normal.Y", "normal.Z"})
-                f.channel(c)[i] = disc ? static_cast<float>((x + y) % 17 - 8) / 16 : 0;
-            f.channel("depth.Z")[i] = disc ? static_cast<float>(y) / 64 : 1;
+            f.channel(channel::alpha)[i] = f.channel(channel::opacity)[i] = disc ? 1.0f : (x + y) % 3 == 0 ? 0.25f : 0.0f;
+            for (const char* c : channel::colour) f.channel(c)[i] = f.at(channel::alpha)[i] * 2 * noise() * noise();
+            for (const char* c : channel::variance) f.channel(c)[i] = f.at(channel::alpha)[i] * noise() * 0.125f;
+            for (const char* c : channel::albedo) f.channel(c)[i] = disc ? 0.25f + 0.5f * static_cast<float>(x / 7 % 2) : 1;
+            for (const char* c : channel::normal) f.channel(c)[i] = disc ? static_cast<float>((x + y) % 17 - 8) / 16 : 0;
+            f.channel(channel::depth)[i] = disc ? static_cast<float>(y) / 64 : 1;
         }
     return f;
 }
@@ -142,7 +141,8 @@ Frame golden_denoised(const Device& device) { return Denoiser(device, golden_net
 
 Model tiny_network() {
     Model m;
-    m.channels = {"R", "G", "B", "albedo.G", "normal.Z", "depth.Z"};
+    m.channels = {channel::colour.begin(), channel::colour.end()};
+    m.channels.insert(m.channels.end(), {channel::albedo[1], channel::normal[2], channel::depth});
     m.hidden = 4;
     m.kernel = 3;
     m.levels = {{4, 32}, {8, 64}};

@@ -19,7 +19,7 @@ inline const std::map<std::string, std::string> golden_hashes{
     {"phase", "058b1810a58a8293e829c4dd945164c674cf4f2e95fe57c110422890b2581fab"},
 };
 inline const std::string golden_denoised_hash = "2f842ced212505c430e78eb0b9e46d27e9a9d89534f993d17779341a72dc449b";
-inline const std::string golden_picture_hash = "2c07f91612a8c167ca073ebabb40784351204816e48cd06a6cb0b87850e4cd75";
+inline const std::string golden_picture_hash = "c6cec2d3a39c9b9f2f9745d3ce1a4604a50a4215094b902d9e1253a905a91ca1";
 
 /// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
 inline const std::array<std::pair<const char*, const char*>, 5> golden_functions{{

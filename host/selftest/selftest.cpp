@@ -70,7 +70,7 @@ std::vector<const Check*> chosen_checks(const std::vector<std::string>& names) {
 }
 
 std::vector<Result> run_checks(const DeviceFacts& facts, const std::vector<const Check*>& wanted, const Listener& listener) {
-    Device device = Device::open(facts, true); // the trust probe is one of the checks
+    Device device = Device::open_untested(facts); // the trust probe is one of the checks
     std::vector<Result> results;
     for (const Check* check : wanted) {
         if (listener.starts) listener.starts(*check);

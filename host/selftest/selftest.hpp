@@ -1,7 +1,7 @@
 // Is this device right? Runs the checks on it, also on one that fails the trust probe: the answer is the report.
 #pragma once
 #include "host/selftest/check.hpp"
-#include "runtime/facts.hpp"
+#include "runtime/drivers/facts.hpp"
 
 #include <functional>
 

@@ -2,7 +2,7 @@
 #include "host/selftest/check.hpp"
 #include "host/selftest/golden.hpp"
 #include "host/train/training_step.hpp"
-#include "runtime/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 
 #include <fmt/format.h>
 

@@ -121,7 +121,7 @@ Outcome check_slab(Device& device) {
     s.mode = Mode::dvr;
     const Frame dvr = render_on(device, volume, s);
     double marched = 0, shown = 0; // the value that is furthest off
-    for (const float a : path.at("opacity.A"))
+    for (const float a : path.at(channel::opacity))
         if (!(std::abs(a - alpha) <= std::abs(marched - alpha)) || marched == 0) marched = a;
     for (const float r : dvr.at("R"))
         if (!(std::abs(r - 0.75 * alpha) <= std::abs(shown - 0.75 * alpha)) || shown == 0) shown = r;

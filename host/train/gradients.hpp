@@ -8,7 +8,7 @@ namespace clvr {
 
 class Gradients {
 public:
-    /// Allocates beside `forward`, whose batch has the given shape. Throws Error{memory}.
+    /// Allocates beside `forward`, whose batch has the given shape. Throws Error{device_memory}.
     Gradients(const Device& device, const Model& model, Loss loss, const NeuralGrid& forward, const BatchShape& shape);
 
     /// Takes the parameters (order of Model::flat).

@@ -12,7 +12,7 @@ enum class ConvolutionBackend { direct, clblast };
 /// maximum, weight gradients (sums over all pixels of an image) to 5e-5.
 class MatrixLayers {
 public:
-    /// Allocates the matrices of one image. Throws Error{memory}.
+    /// Allocates the matrices of one image. Throws Error{device_memory}.
     MatrixLayers(const Device& device, const Model& model, const BatchShape& shape);
 
     /// Takes the parameters (order of Model::flat), which must live on.

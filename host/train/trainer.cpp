@@ -1,13 +1,13 @@
 #include "host/train/trainer.hpp"
 #include "host/denoise/denoiser.hpp"
 #include "host/frame/metrics.hpp"
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
+#include "host/pairs/folder.hpp"
 #include "host/train/checkpoint.hpp"
-#include "host/train/pairs.hpp"
-#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/schedule/scheduler.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <algorithm>
 #include <cmath>

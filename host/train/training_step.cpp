@@ -1,7 +1,7 @@
 #include "host/train/training_step.hpp"
 #include "host/train/replica.hpp"
-#include "runtime/dealer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/schedule/scheduler.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ struct TrainingStep::State {
     StepConfig config;
     ChannelPlan plan;
     std::size_t parameters;
-    Dealer dealer;
+    Scheduler scheduler;
     std::vector<std::unique_ptr<Replica>> replicas; // by device; null for one that failed at once
     std::vector<TrainingImage> images;
     std::int64_t step = 0;
@@ -39,7 +39,7 @@ struct TrainingStep::State {
     bool compared = false;
 
     State(const std::vector<Device>& devices, const Model& m, const StepConfig& c)
-        : start(m), config(c), plan(m, true), parameters(m.parameters()), dealer(devices), replicas(devices.size()) {}
+        : start(m), config(c), plan(m, true), parameters(m.parameters()), scheduler(devices), replicas(devices.size()) {}
 
     bool alone() const { return replicas.size() == 1; }
     Replica& only() const { return *replicas.front(); }
@@ -59,34 +59,34 @@ struct TrainingStep::State {
     }
 
     /// All devices that are left share the patches. `rows` notes which device did which patch.
-    void deal(const std::vector<Crop>& crops) {
+    void find_gradients(const std::vector<Crop>& crops) {
         const float share = share_of(crops);
         rows.resize(crops.size());
-        std::vector<Dealer::Portion> portions(replicas.size());
-        const std::size_t to = dealer.left().front();
-        dealer.each([&](std::size_t k) {
-            portions[k].most = static_cast<std::uint32_t>(replicas[k]->micro_batch());
+        std::vector<Scheduler::ChunkSize> chunk_sizes(replicas.size());
+        const std::size_t to = scheduler.left().front();
+        scheduler.each([&](std::size_t k) {
+            chunk_sizes[k].most = static_cast<std::uint32_t>(replicas[k]->micro_batch());
             replicas[k]->begin();
         });
         if (!std::exchange(compared, true)) // one that computes other bits must not mix with the others
-            dealer.compare("gradients", [&](std::size_t k) {
+            scheduler.compare("gradients", [&](std::size_t k) {
                 Replica& r = *replicas[k];
                 r.find_gradients(crops, images, 0, 1, share);
                 const auto row = r.device().download<float>(r.patch_gradients(), parameters);
                 return std::string(reinterpret_cast<const char*>(row.data()), row.size() * sizeof(float));
             });
-        dealer.deal("patches", static_cast<std::uint32_t>(crops.size()), 1, portions,
-                    [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
-                        Replica& r = *replicas[k];
-                        r.find_gradients(crops, images, first, count, share);
-                        if (same_context(k, to)) r.device().finish();
-                        for (std::size_t i = first; i < first + count; ++i) {
-                            rows[i].device = k;
-                            if (same_context(k, to)) continue; // the leader copies it on its device
-                            rows[i].gradient = r.device().download<float>(r.patch_gradients(), parameters, i * parameters);
-                            rows[i].loss = r.device().download<float>(r.patch_losses(), 1, i).front();
-                        }
-                    });
+        scheduler.run("patches", static_cast<std::uint32_t>(crops.size()), 1, chunk_sizes,
+                      [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
+                          Replica& r = *replicas[k];
+                          r.find_gradients(crops, images, first, count, share);
+                          if (same_context(k, to)) r.device().finish();
+                          for (std::size_t i = first; i < first + count; ++i) {
+                              rows[i].device = k;
+                              if (same_context(k, to)) continue; // the leader copies it on its device
+                              rows[i].gradient = r.device().download<float>(r.patch_gradients(), parameters, i * parameters);
+                              rows[i].loss = r.device().download<float>(r.patch_losses(), 1, i).front();
+                          }
+                      });
     }
 
     /// Brings the rows of the others to the leader.
@@ -112,9 +112,9 @@ struct TrainingStep::State {
     template <class Finish>
     void together(const std::vector<Crop>& crops, Finish&& finish) {
         for (;;) {
-            const std::size_t first = dealer.left().front();
-            deal(crops);
-            if (dealer.left().front() != first) continue;
+            const std::size_t first = scheduler.left().front();
+            find_gradients(crops);
+            if (scheduler.left().front() != first) continue;
             try {
                 if (leader != first) replicas[first]->set_state(present);
                 leader = first;
@@ -123,7 +123,7 @@ struct TrainingStep::State {
                 return finish(*replicas[first]);
             } catch (const Error& error) {
                 if (!is_device_failure(error)) throw;
-                dealer.drop(first, error);
+                scheduler.drop(first, error);
             }
         }
     }
@@ -143,7 +143,7 @@ struct TrainingStep::State {
             present.step = ++step;
             losses.push_back(loss);
         });
-        dealer.each([&](std::size_t k) {
+        scheduler.each([&](std::size_t k) {
             if (k != leader) replicas[k]->set_parameters(present.parameters);
         });
     }
@@ -163,8 +163,8 @@ TrainingStep::TrainingStep(const std::vector<Device>& devices, const Model& mode
     validate(model);
     if (!s.alone() && config.convolution == ConvolutionBackend::clblast)
         throw Error(ErrorKind::usage, "takes one device: its sums have another order on each; give one --device", "--conv clblast");
-    s.dealer.each([&](std::size_t k) { s.replicas[k] = std::make_unique<Replica>(devices[k], model, config); });
-    s.leader = s.dealer.left().front();
+    s.scheduler.each([&](std::size_t k) { s.replicas[k] = std::make_unique<Replica>(devices[k], model, config); });
+    s.leader = s.scheduler.left().front();
     s.present = {model.flat(), std::vector<float>(s.parameters), std::vector<float>(s.parameters), 0};
 }
 TrainingStep::~TrainingStep() = default;
@@ -180,16 +180,16 @@ int TrainingStep::add_image(const Frame& noisy, const Frame& target) {
     if (noisy.width < s.config.patch || noisy.height < s.config.patch)
         throw Error(ErrorKind::input,
                     fmt::format("is {} x {} pixels, smaller than a patch of {}", noisy.width, noisy.height, s.config.patch));
-    TrainingImage image{noisy.width, noisy.height, s.plan.params(s.start.exposure ? exposure_of(noisy) : 1), {}};
+    TrainingImage image{noisy.width, noisy.height, s.plan.params(noisy), {}};
     s.plan.gather(noisy, &target, {0, 0, noisy.width, noisy.height}, s.plan.known_light(noisy), image.planes);
     std::vector<std::shared_ptr<const Buffer>> uploaded(s.replicas.size());
-    s.dealer.each([&](std::size_t k) {
+    s.scheduler.each([&](std::size_t k) {
         std::shared_ptr<const Buffer> from; // devices of one context share an upload
         for (std::size_t other = 0; other < k; ++other)
             if (uploaded[other] && s.same_context(other, k)) from = uploaded[other];
         uploaded[k] = s.replicas[k]->add_image(image, from);
     });
-    const auto left = s.dealer.left();
+    const auto left = s.scheduler.left();
     if (std::all_of(left.begin(), left.end(), [&](std::size_t k) { return uploaded[k] != nullptr; })) image.planes = {};
     s.images.push_back(std::move(image));
     return static_cast<int>(s.images.size()) - 1;
@@ -199,7 +199,7 @@ int TrainingStep::images() const { return static_cast<int>(state_->images.size()
 
 std::vector<Device> TrainingStep::devices() const {
     std::vector<Device> devices;
-    for (const std::size_t k : state_->dealer.left()) devices.push_back(state_->replicas[k]->device());
+    for (const std::size_t k : state_->scheduler.left()) devices.push_back(state_->replicas[k]->device());
     return devices;
 }
 
@@ -218,7 +218,7 @@ void TrainingStep::set_state(const OptimizerState& state) {
     s.fetch_losses();
     s.present = state;
     s.step = state.step;
-    s.dealer.each([&](std::size_t k) { s.replicas[k]->set_state(state); });
+    s.scheduler.each([&](std::size_t k) { s.replicas[k]->set_state(state); });
 }
 
 void TrainingStep::step(const std::vector<Crop>& crops, double learning_rate) {

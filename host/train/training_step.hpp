@@ -3,7 +3,7 @@
 #include "host/denoise/model.hpp"
 #include "host/frame/frame.hpp"
 #include "host/train/matrix_layers.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 
 #include <cstdint>
 #include <memory>

@@ -1,6 +1,6 @@
 // What may be tuned of training, beside the network (host/denoise/tunables.hpp).
 #pragma once
-#include "runtime/tunables.hpp"
+#include "runtime/tune/tunables.hpp"
 
 namespace clvr::tunables {
 

@@ -1,7 +1,6 @@
-// Which bricks are stored, where each lies, and their contents.
-#include "host/volume/bricks.hpp"
+#include "host/volume/brick_layout.hpp"
 #include "runtime/error.hpp"
-#include "runtime/parallel.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -13,7 +12,7 @@ namespace clvr {
 namespace {
 
 /// Puts the stored bricks, in their order, into pools of at most `capacity` voxels; returns how many pools that takes.
-std::size_t deal(BrickLayout& layout, std::size_t capacity, std::size_t bytes_per_voxel) {
+std::size_t fill_pools(BrickLayout& layout, std::size_t capacity, std::size_t bytes_per_voxel) {
     layout.pool_bytes.assign(1, 0);
     std::size_t filled = 0;
     for (std::size_t b = 0; b < layout.offset.size(); ++b) {
@@ -124,17 +123,17 @@ BrickLayout brick_layout(const Voxels& v, const MajorantGrid& grid, const std::v
     const std::size_t capacity = std::min(max_pool_bytes / bytes, std::size_t{1} << 31);
     const auto too_big = [&] {
         return Error(
-            ErrorKind::memory,
+            ErrorKind::device_memory,
             fmt::format("the visible part of the volume takes {:.1f} MiB on the device, more than 8 buffers of at most {:.1f} MiB; try a "
                         "transfer function that shows less, a larger --memory, or another --device",
                         total * bytes / 1048576.0, capacity * bytes / 1048576.0));
     };
     if (largest > capacity) throw too_big();
-    const std::size_t used = deal(layout, capacity, bytes);
+    const std::size_t used = fill_pools(layout, capacity, bytes);
     if (used > 8) throw too_big();
     while (layout.pools < static_cast<int>(used)) layout.pools *= 2;
     // Once more, evenly: a pool that is closed holds more than total / pools, so no further pool is needed.
-    deal(layout, std::min(capacity, total / layout.pools + largest), bytes);
+    fill_pools(layout, std::min(capacity, total / layout.pools + largest), bytes);
     layout.pool_bytes.resize(layout.pools, 0);
     return layout;
 }

@@ -1,5 +1,5 @@
 #include "host/volume/stored_counts.hpp"
-#include "runtime/parallel.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <limits>
 #include <mutex>

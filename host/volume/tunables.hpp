@@ -1,6 +1,6 @@
-// What may be tuned of kernels that work in packets, and of computed volumes.
+// What may be tuned of kernels that work in packets.
 #pragma once
-#include "runtime/tunables.hpp"
+#include "runtime/tune/tunables.hpp"
 
 namespace clvr::tunables {
 
@@ -19,9 +19,5 @@ inline constexpr Tunable packet{"packet",
 /// Default work-items in a group of a packet kernel. An interpreter keeps what every instruction of a group computed until the group ends
 /// (Oclgrind: core/WorkItem.h, m_pool), so its groups have one work-item.
 inline int usual_packet_group(const DeviceFacts& d, const Tunables& set) { return value_of(packet, d, set) > 1 || d.simulator ? 1 : 64; }
-
-/// Work-items in a group of the kernels that compute volumes.
-inline constexpr Tunable phantom_group{
-    "phantom_group", AllowedValues::powers_of_two(1, 256), usual_packet_group, {"compute volume"}, {1, 2, 4, 8}, {16, 32, 64, 128, 256}};
 
 } // namespace clvr::tunables

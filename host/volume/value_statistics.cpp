@@ -1,6 +1,6 @@
 #include "host/volume/value_statistics.hpp"
 #include "host/volume/stored_counts.hpp"
-#include "runtime/parallel.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <array>

@@ -23,7 +23,8 @@ __kernel void assemble(__constant DenoiseParams* p, SourceParams s, __global con
 #define PLANE(planes, channels, c, v) v_store(v_select(inside, v, (vfloat)(0.0f)), planes + plane_start(p, n, channels, c) + to)
 
     for (int c = 0; c < s.channels; ++c) {
-        vfloat v = SOURCE(channel[c].x);
+        vfloat v = (vfloat)(s.noise);
+        if (channel[c].y != CLVR_CHANNEL_NOISE) v = SOURCE(channel[c].x);
         if (channel[c].y == CLVR_CHANNEL_RADIANCE) v = v_tonemap(v_min(v * s.exposure, (vfloat)(s.ceiling)));
         if (channel[c].y == CLVR_CHANNEL_NORMAL) v = fma(v, (vfloat)(0.5f), (vfloat)(0.5f));
         PLANE(input, s.channels, c, v);

@@ -6,6 +6,7 @@ CLVR_SHARED_BEGIN
 
 #define CLVR_LEVELS_MAX 8
 #define CLVR_BLEND_RADIUS 10 ///< of the window of kernels/denoise/blend_by_variance.cl [pixels]
+#define CLVR_FIT_SUMS 11     ///< of a cell's least squares (denoise/light_columns.cl)
 #define CLVR_BAND_BLOCK 8    ///< of the loss's blocks (train/bands.cl) [pixels]
 #define CLVR_BAND_GROUP 4    ///< of the blocks whose mean is taken off [blocks]
 #define CLVR_BAND_WEIGHT 4.0f
@@ -44,7 +45,13 @@ typedef struct DenoiseParams {
 CLVR_CHECK_SIZE(DenoiseParams, 352);
 
 /// What a channel of the network's input is made of.
-enum ChannelKind { CLVR_CHANNEL_PLAIN, CLVR_CHANNEL_RADIANCE, CLVR_CHANNEL_NORMAL };
+enum ChannelKind { CLVR_CHANNEL_PLAIN, CLVR_CHANNEL_RADIANCE, CLVR_CHANNEL_NORMAL, CLVR_CHANNEL_NOISE /* no plane */ };
+
+/// Planes of a film that tell its light, by number: the first of three each, and the opacity of the feature rays.
+typedef struct LightPlanes {
+    int noisy, key, sky, albedo, opacity;
+} LightPlanes;
+CLVR_CHECK_SIZE(LightPlanes, 20);
 
 /// Planes of a source image (each width * height floats, no border), by number; -1: absent.
 typedef struct SourceParams {
@@ -56,8 +63,9 @@ typedef struct SourceParams {
     float exposure;     ///< factor of radiance
     float ceiling;      ///< radiance is clamped here after exposure
     float albedo_floor;
+    float noise; ///< (samples per pixel)^(-1/2)
 } SourceParams;
-CLVR_CHECK_SIZE(SourceParams, 36);
+CLVR_CHECK_SIZE(SourceParams, 40);
 
 CLVR_SHARED_END
 #endif

@@ -87,6 +87,13 @@
     CLVR_FIELD(SourceParams, exposure)                                                                                                     \
     CLVR_FIELD(SourceParams, ceiling)                                                                                                      \
     CLVR_FIELD(SourceParams, albedo_floor)                                                                                                 \
+    CLVR_FIELD(SourceParams, noise)                                                                                                        \
+    CLVR_STRUCT(LightPlanes)                                                                                                               \
+    CLVR_FIELD(LightPlanes, noisy)                                                                                                         \
+    CLVR_FIELD(LightPlanes, key)                                                                                                           \
+    CLVR_FIELD(LightPlanes, sky)                                                                                                           \
+    CLVR_FIELD(LightPlanes, albedo)                                                                                                        \
+    CLVR_FIELD(LightPlanes, opacity)                                                                                                       \
     CLVR_STRUCT(FilterParams)                                                                                                              \
     CLVR_FIELD(FilterParams, width)                                                                                                        \
     CLVR_FIELD(FilterParams, height)                                                                                                       \

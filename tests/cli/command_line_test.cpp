@@ -4,7 +4,7 @@
 #include "host/cli/first_word.hpp"
 #include "host/cli/program.hpp"
 #include "runtime/error.hpp"
-#include "runtime/nearest.hpp"
+#include "runtime/system/nearest.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // `clvr devices` and what every subcommand shares: exit codes, unusual machines, the caches.
-#include "runtime/program_cache.hpp"
+#include "runtime/opencl/program_cache.hpp"
 #include "tests/cli/home.hpp"
 
 #include <gmock/gmock.h>

@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 namespace clvr {
@@ -182,6 +184,30 @@ TEST_F(Render, OtherModesAndLights) {
     }
 }
 
+TEST_F(Render, ChannelsOfAnExr) {
+    const auto names = [&](const std::string& file) {
+        std::string all;
+        for (const auto& [name, values] : read_exr(path(file)).channels) all += name + " ";
+        return all;
+    };
+    ASSERT_EQ(run_ball({"-o", "all.exr", "-o", "all.png", "--channels", "all"}).exit_code, 0);
+    ASSERT_EQ(run_ball({"-o", "beauty.exr", "-o", "beauty.png", "--channels", "beauty"}).exit_code, 0);
+    ASSERT_EQ(run_ball({"-o", "over.exr", "--channels", "beauty", "--background", "1"}).exit_code, 0);
+    EXPECT_EQ(names("beauty.exr"), "A B G R ");
+    EXPECT_EQ(names("over.exr"), "B G R ") << "opaque";
+    const Frame all = read_exr(path("all.exr")), beauty = read_exr(path("beauty.exr"));
+    EXPECT_GT(all.channels.size(), 15u);
+    for (const auto& [name, values] : beauty.channels) EXPECT_EQ(values, all.at(name)) << name;
+    EXPECT_EQ(beauty.attributes.at("clvr.spp"), all.attributes.at("clvr.spp"));
+    EXPECT_EQ(pixel_hash(read_png(path("beauty.png"))), pixel_hash(read_png(path("all.png"))));
+    ASSERT_EQ(Child({"denoise", path("all.exr"), "-o", path("clean.exr"), "--channels", "beauty"}, {}, folder.path()).wait().exit_code, 0);
+    EXPECT_EQ(names("clean.exr"), "A B G R ");
+    const Outcome wrong = run_ball({"-o", "wrong.exr", "--channels", "some"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.err, ::testing::HasSubstr("expected beauty or all"));
+    EXPECT_FALSE(exists("wrong.exr"));
+}
+
 TEST_F(Render, DenoisesTheSameBitsOnOneDeviceOnPartsAndAfterwards) {
     for (const std::string spp : {"1", "3"}) {
         SCOPED_TRACE(spp);
@@ -316,6 +342,19 @@ TEST_F(Render, RefusesWithOneLineAndWritesNothing) {
         EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << command << "\n" << o.err;
         EXPECT_FALSE(exists("x.png")) << command;
     }
+}
+
+TEST_F(Render, MemoryOfTheMachineIsNoDevicesFailure) {
+    if (run_ball({"-o", "one.exr", "--device", "cpu/2"}).exit_code != 0) GTEST_SKIP() << "no CPU of two parts";
+    const char* name = "huge_10000x10000x10000_uint8.raw"; // sparse: a terabyte that takes no room
+    std::ofstream(folder.path() / name).close();
+    std::error_code failed;
+    std::filesystem::resize_file(folder.path() / name, 1000000000000u, failed);
+    if (failed) GTEST_SKIP() << "no file of a terabyte here: " << failed.message();
+    const Outcome o = run({name, "-o", "x.png", "--device", "cpu/2"});
+    EXPECT_EQ(o.exit_code, 5) << o.err;
+    EXPECT_THAT(o.err, testing::AllOf(HasSubstr(name), HasSubstr("of memory"), testing::Not(HasSubstr("left out"))));
+    EXPECT_EQ(std::count(o.err.begin(), o.err.end(), '\n'), 1) << o.err;
 }
 
 TEST_F(Render, GoesOnWithoutADeviceThatFails) {

@@ -1,5 +1,5 @@
 // `clvr selftest` as a user sees it: lines, JSON, exit codes; devices that fail, drivers that end the program.
-#include "runtime/source.hpp"
+#include "runtime/opencl/source.hpp"
 #include "tests/cli/home.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 // What CLVR_TUNE may hold: names and values that are not declared end in one line, whatever the command.
-#include "runtime/tunables.hpp"
+#include "runtime/tune/tunables.hpp"
 #include "tests/cli/home.hpp"
 
 #include <gmock/gmock.h>

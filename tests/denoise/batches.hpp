@@ -2,7 +2,8 @@
 #pragma once
 #include "host/denoise/neural_grid.hpp"
 #include "host/frame/frame.hpp"
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/trust/trust.hpp"
 #include "tests/denoise/golden.hpp"
 
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace clvr::testing {
 
-inline Device test_device() { return Device::open(select_devices("").devices.front()); }
+inline Device test_device() { return open_trusted(select_devices("").devices.front()); }
 
 /// Image n of x [B, H, W, 10] (demodulated radiance, albedo, normal, depth) as a frame.
 inline Frame frame_of(const std::vector<double>& x, int height, int width, int n) {

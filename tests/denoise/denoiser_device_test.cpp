@@ -388,7 +388,7 @@ TEST(Assemble, TurnsAsTheGoldenVectorsDo) {
             const std::vector<double> want = golden["aug" + std::to_string(k)];
             const std::vector<std::int64_t> shape = golden.shape("aug" + std::to_string(k));
             NeuralGrid grid(device, model, {static_cast<int>(shape[1]), static_cast<int>(shape[0])});
-            grid.assemble(source, 4, 3, plan.params(1), 0, 0, k, 0);
+            grid.assemble(source, 4, 3, plan.params(1, 1), 0, 0, k, 0);
             const auto pixels = device.download<shared::float4>(grid.splatted(), 12);
             for (int i = 0; i < 12; ++i) {
                 EXPECT_EQ(pixels[i].x, static_cast<float>(want[2 * i])) << k;
@@ -408,7 +408,7 @@ TEST(Assemble, TonemapMeetsTheGoldenVectors) {
     std::vector<float> planes;
     for (int c = 0; c < 3; ++c) planes.insert(planes.end(), x.begin(), x.end());
     NeuralGrid grid(device, model, {static_cast<int>(x.size()), 1});
-    grid.assemble(device.upload(planes, "source"), static_cast<int>(x.size()), 1, ChannelPlan(model, false).params(1), 0, 0, 0, 0);
+    grid.assemble(device.upload(planes, "source"), static_cast<int>(x.size()), 1, ChannelPlan(model, false).params(1, 1), 0, 0, 0, 0);
     golden.expect_near("y", interleaved(grid, grid.input(), 3, 0, 1));
 }
 

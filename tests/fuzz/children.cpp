@@ -1,5 +1,5 @@
 #include "tests/fuzz/children.hpp"
-#include "host/io/atomic_file.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,11 +1,11 @@
 #include "tests/fuzz/samples.hpp"
 
+#include "host/appearance/embedded_presets.hpp"
 #include "host/dataset/embedded_manifests.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/io/scene/scene_file.hpp"
-#include "host/volume/embedded_presets.hpp"
-#include "runtime/embedded.hpp"
+#include "runtime/system/embedded.hpp"
 #include "tests/fuzz/volume_samples.hpp"
 #include "tests/io/exr_writers.hpp"
 #include "tests/io/volume_writers.hpp"

@@ -1,19 +1,19 @@
 #include "tests/fuzz/targets.hpp"
 
+#include "host/appearance/environment.hpp"
+#include "host/appearance/transfer_function.hpp"
 #include "host/dataset/manifest.hpp"
 #include "host/denoise/channels.hpp"
-#include "host/io/atomic_file.hpp"
+#include "host/io/dicom/file.hpp"
 #include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/io/scene/scene_file.hpp"
-#include "host/io/volume/dicom/file.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
-#include "host/render/environment.hpp"
-#include "host/volume/transfer_function.hpp"
-#include "runtime/remembered.hpp"
-#include "runtime/tuning.hpp"
+#include "runtime/choose/remembered.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/tune/tuning.hpp"
 
 #include <algorithm>
 #include <cmath>

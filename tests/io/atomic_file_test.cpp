@@ -1,5 +1,5 @@
 // Files that are never seen half-written.
-#include "host/io/atomic_file.hpp"
+#include "runtime/system/atomic_file.hpp"
 #include "tests/io/frames.hpp"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 // Model files: as written, by hand, and broken.
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>

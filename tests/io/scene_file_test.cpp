@@ -1,6 +1,6 @@
 // Scene files: every field there and back, and what is refused.
-#include "host/io/atomic_file.hpp"
 #include "host/io/scene/scene_file.hpp"
+#include "runtime/system/atomic_file.hpp"
 #include "tests/io/frames.hpp"
 
 #include <gmock/gmock.h>

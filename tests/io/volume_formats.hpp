@@ -241,7 +241,7 @@ inline bool reads_or_throws(const std::string& path) {
         EXPECT_GT(v.count(), 0u);
         return true;
     } catch (const Error& e) {
-        EXPECT_TRUE(e.kind() == ErrorKind::input || e.kind() == ErrorKind::memory) << e.line();
+        EXPECT_TRUE(e.kind() == ErrorKind::input || e.kind() == ErrorKind::host_memory) << e.line();
         return false;
     }
 }

@@ -1,6 +1,6 @@
 // Interpolation, gradient and classification in double precision, straight from host/README.md, "Geometry" and "Transfer function".
 #pragma once
-#include "host/volume/transfer_function.hpp"
+#include "host/appearance/transfer_function.hpp"
 
 namespace clvr::reference {
 

@@ -1,5 +1,4 @@
 // The coarse grid of opacity: means and emptiness against the voxels, distances against a search, marches against the full lattice.
-#include "host/render/coarse_opacity.hpp"
 #include "tests/render/scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -10,15 +9,32 @@
 namespace clvr::testing {
 namespace {
 
-TEST(MarkDistances, AreThoseOfASearch) {
+/// A grid with distances in place of each 0, by the kernel.
+std::vector<float> with_distances(const std::vector<float>& grid, const shared::int4& cells, int width) {
+    Device& device = shared_device();
+    Buffer from = device.upload(grid, "grid"), to = device.buffer(from.bytes(), "grid");
+    Kernel kernel = device.kernel("volume/distances", {{"CLVR_WIDTH", std::to_string(width)}});
+    const float farthest = static_cast<float>(std::max({cells.x, cells.y, cells.z}) + 1);
+    for (cl_int axis = 0; axis < 3; ++axis) {
+        device.launch(
+            kernel,
+            {static_cast<std::size_t>((cells.x + width - 1) / width), static_cast<std::size_t>(cells.y), static_cast<std::size_t>(cells.z)},
+            {1}, {}, from, cells, axis, farthest, to);
+        std::swap(from, to);
+    }
+    return device.download<float>(from, grid.size());
+}
+
+TEST(Distances, AreThoseOfASearch) {
     std::mt19937 random(3);
-    for (const shared::int4& cells : {shared::int4{7, 5, 6, 2}, shared::int4{1, 9, 2, 2}, shared::int4{4, 1, 1, 3}}) {
+    for (const shared::int4& cells :
+         {shared::int4{7, 5, 6, 2}, shared::int4{1, 9, 2, 2}, shared::int4{4, 1, 1, 3}, shared::int4{70, 3, 2, 2}}) {
         for (const int filled : {0, 1, 3, 40}) {
             const int count = cells.x * cells.y * cells.z;
             std::vector<float> grid(count, 0.0f);
             for (int k = 0; k < filled; ++k) grid[random() % count] = 0.25f;
-            std::vector<float> found = grid;
-            mark_distances(found, cells);
+            const std::vector<float> found = with_distances(grid, cells, 1);
+            for (const int width : {4, 8, 16}) ASSERT_EQ(found, with_distances(grid, cells, width)) << width;
             for (int c = 0; c < count; ++c) {
                 const auto place = [&](int n) { return Int3{n % cells.x, n / cells.x % cells.y, n / cells.x / cells.y}; };
                 int least = std::max({cells.x, cells.y, cells.z}) + 1;

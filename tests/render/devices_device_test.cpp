@@ -90,7 +90,7 @@ TEST(FaultyDevices, AllOfThemAreAnError) {
     std::string line;
     EXPECT_EQ(refusal_with("launch:9", 0, &line), ErrorKind::device);
     EXPECT_THAT(line, ::testing::HasSubstr("CL_DEVICE_NOT_AVAILABLE"));
-    EXPECT_EQ(refusal_with("alloc:4", 0), ErrorKind::memory);
+    EXPECT_EQ(refusal_with("alloc:4", 0), ErrorKind::device_memory);
     EXPECT_EQ(refusal_with("build:render/compact", 0, &line), ErrorKind::device);
     EXPECT_THAT(line, ::testing::HasSubstr("does not build"));
 }

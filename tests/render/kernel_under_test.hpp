@@ -1,7 +1,7 @@
 // The kernels under tests/render/kernels/: entry points that call the functions of kernels/lib directly.
 #pragma once
-#include "runtime/device.hpp"
-#include "runtime/source.hpp"
+#include "runtime/opencl/device.hpp"
+#include "runtime/opencl/source.hpp"
 
 #include <cstdlib>
 #include <string>

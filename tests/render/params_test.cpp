@@ -1,6 +1,6 @@
 // From a scene to what the kernels read; hashes of frames; environment tables.
+#include "host/appearance/environment.hpp"
 #include "host/frame/frame.hpp"
-#include "host/render/environment.hpp"
 #include "host/render/params.hpp"
 
 #include <gtest/gtest.h>

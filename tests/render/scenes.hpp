@@ -1,7 +1,8 @@
 // Devices, pictures and statistics that the tests of the renderer share.
 #pragma once
 #include "host/selftest/scenes.hpp"
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/trust/trust.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +12,7 @@ namespace clvr::testing {
 using namespace selftest;
 
 /// The device under test, opened anew: tunables and limits set on it end with it.
-inline Device open_device(const std::string& selector = {}) { return Device::open(select_devices(selector).devices.at(0)); }
+inline Device open_device(const std::string& selector = {}) { return open_trusted(select_devices(selector).devices.at(0)); }
 
 /// The device under test, opened once: for tests that set nothing on it. Programs are built once, too.
 inline Device& shared_device() {

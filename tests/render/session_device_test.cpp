@@ -241,7 +241,7 @@ TEST(Memory, TooLittleIsAnErrorAndIsGivenBack) {
     const std::size_t before = device.used_bytes();
     const PreparedVolume volume(constant_volume({128, 128, 128}));
     device.set_memory_limit(before + (1 << 20));
-    EXPECT_EQ(kind_of([&] { RenderSession({device}, volume, small_scene()); }), ErrorKind::memory);
+    EXPECT_EQ(kind_of([&] { RenderSession({device}, volume, small_scene()); }), ErrorKind::device_memory);
     EXPECT_EQ(device.used_bytes(), before);
     device.set_memory_limit(before + (3 << 20)); // the volume fits, the paths do not
     EXPECT_EQ(kind_of([&] {
@@ -249,7 +249,7 @@ TEST(Memory, TooLittleIsAnErrorAndIsGivenBack) {
                   s.width = s.height = 1024;
                   clvr::render({device}, volume, s);
               }),
-              ErrorKind::memory);
+              ErrorKind::device_memory);
     EXPECT_EQ(device.used_bytes(), before);
 }
 

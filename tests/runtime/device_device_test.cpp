@@ -1,7 +1,8 @@
 #include "host/render/tunables.hpp"
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
+#include "runtime/trust/trust.hpp"
 
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>
@@ -56,7 +57,7 @@ TEST(Facts, AreWorthBelieving) {
 }
 
 TEST(Device, TransfersAndFill) {
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     std::vector<int> numbers(1000);
     std::iota(numbers.begin(), numbers.end(), -17);
     Buffer buffer = device.upload(numbers, "numbers");
@@ -80,7 +81,7 @@ TEST(Device, TransfersAndFill) {
 }
 
 TEST(Device, TransfersStayWithinTheBuffer) {
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     Buffer buffer = device.buffer(16, "small");
     char bytes[32] = {};
     EXPECT_NO_THROW(device.write(buffer, bytes, 0, 16));
@@ -93,7 +94,7 @@ TEST(Device, TransfersStayWithinTheBuffer) {
 }
 
 TEST(Device, AccountsItsBuffers) {
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     ASSERT_EQ(device.used_bytes(), 0u);
     const std::size_t free = device.free_bytes();
     {
@@ -114,26 +115,26 @@ TEST(Device, AccountsItsBuffers) {
 
 TEST(Device, RefusesBeforeAllocating) {
     const ScopedVariable alloc("CLVR_MAX_ALLOC", "1M"), memory("CLVR_MAX_MEMORY", "2M");
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     EXPECT_EQ(device.max_alloc_bytes(), 1u << 20);
     EXPECT_EQ(device.free_bytes(), 2u << 20);
     const Error large = error_of([&] { device.buffer((1 << 20) + 1, "frames"); });
-    EXPECT_EQ(large.kind(), ErrorKind::memory);
+    EXPECT_EQ(large.kind(), ErrorKind::device_memory);
     EXPECT_THAT(large.line(), testing::AllOf(testing::StartsWith("frames on "), testing::HasSubstr("1.0 MiB")));
     const Buffer a = device.buffer(1 << 20, "a"), b = device.buffer(900 << 10, "b");
     const Error full = error_of([&] { device.buffer(200 << 10, "c"); });
-    EXPECT_EQ(full.kind(), ErrorKind::memory);
+    EXPECT_EQ(full.kind(), ErrorKind::device_memory);
     EXPECT_THAT(full.what(), testing::AllOf(testing::HasSubstr("200 KiB"), testing::HasSubstr("2.0 MiB"), testing::HasSubstr("124 KiB")));
     EXPECT_EQ(device.used_bytes(), a.bytes() + b.bytes());
     device.set_memory_limit(1 << 20);
     EXPECT_EQ(device.free_bytes(), 0u);
-    EXPECT_EQ(error_of([&] { device.buffer(1, "d"); }).kind(), ErrorKind::memory);
+    EXPECT_EQ(error_of([&] { device.buffer(1, "d"); }).kind(), ErrorKind::device_memory);
 }
 
 TEST(Device, WithoutACompilerIsRefusedByName) {
     DeviceFacts facts = chosen();
     facts.has_compiler = false;
-    const Error error = error_of([&] { Device::open(facts); });
+    const Error error = error_of([&] { open_trusted(facts); });
     EXPECT_EQ(error.kind(), ErrorKind::device);
     EXPECT_EQ(error.where(), facts.name);
     EXPECT_THAT(error.what(), testing::HasSubstr("no OpenCL compiler"));
@@ -141,18 +142,18 @@ TEST(Device, WithoutACompilerIsRefusedByName) {
 
 TEST(Device, WrongLimitIsAUsageError) {
     const ScopedVariable alloc("CLVR_MAX_ALLOC", "lots");
-    EXPECT_EQ(error_of([] { Device::open(chosen()); }).line().rfind("CLVR_MAX_ALLOC: ", 0), 0u);
+    EXPECT_EQ(error_of([] { open_trusted(chosen()); }).line().rfind("CLVR_MAX_ALLOC: ", 0), 0u);
 }
 
 TEST(Device, OneAccountForAllThatIsOpenedOnADevice) {
-    Device first = Device::open(chosen()), second = Device::open(chosen());
+    Device first = open_trusted(chosen()), second = open_trusted(chosen());
     const Buffer buffer = first.buffer(100, "a");
     EXPECT_EQ(second.used_bytes(), 100u);
 }
 
 TEST(Device, Tunables) {
     const ScopedVariable tune("CLVR_TUNE", "packet=8,conv_vectors=3");
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     EXPECT_EQ(device.tunable(tunables::packet), 8);
     EXPECT_EQ(device.tunable(tunables::packet_refill), 2) << "the default of such packets";
     EXPECT_EQ(device.tunable(tunables::packet_run), tunables::packet_run.usual(device.facts(), {{"packet", 8}}));
@@ -166,11 +167,11 @@ TEST(Device, Tunables) {
     EXPECT_EQ(error_of([&] { device.set_tunable("packet", 2); }).kind(), ErrorKind::usage);
     EXPECT_EQ(error_of([&] { device.set_tunables({{"packet", 2}}); }).kind(), ErrorKind::usage);
     const ScopedVariable bad("CLVR_TUNE", "packet=2");
-    EXPECT_EQ(error_of([] { Device::open(chosen()); }).kind(), ErrorKind::usage);
+    EXPECT_EQ(error_of([] { open_trusted(chosen()); }).kind(), ErrorKind::usage);
 }
 
 TEST_F(Launches, AreRoundedUpToTheLocalSize) {
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     Buffer numbers = device.buffer(1001 * sizeof(int), "numbers");
     device.fill(numbers, 0);
     Kernel iota = device.kernel("t/iota");
@@ -184,7 +185,7 @@ TEST_F(Launches, AreRoundedUpToTheLocalSize) {
 }
 
 TEST_F(Launches, ThatCannotBeAreRefused) {
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     Buffer numbers = device.buffer(16, "numbers");
     Kernel iota = device.kernel("t/iota");
     EXPECT_EQ(error_of([&] { device.launch(iota, {16}, {0}, {}, numbers, 0, cl_uint{4}); }).kind(), ErrorKind::internal);
@@ -201,7 +202,7 @@ TEST_F(Launches, ThatCannotBeAreRefused) {
 }
 
 TEST_F(Launches, AreEachTimedOnce) {
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     Buffer numbers = device.buffer(4, "numbers");
     Kernel iota = device.kernel("t/iota");
     for (int i = 0; i < 3000; ++i) device.launch(iota, {1}, {1}, {0, 2}, numbers, i, cl_uint{1});
@@ -218,7 +219,7 @@ TEST(Device, KernelsAreBuiltPerDefinitions) {
                                "to[0] = scratch[0]; }\n");
     folder.write("t/value.clh", "#define ONE 1\n");
     const ScopedKernels kernels(folder);
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     Buffer result = device.buffer(4, "result");
     for (const int value : {1, 2, 1}) {
         Kernel kernel = device.kernel("t/value", {{"VALUE", std::to_string(value)}});
@@ -237,7 +238,7 @@ TEST(Device, BuildFailureShowsFileAndLine) {
     folder.write("lib/fine.clh", "int fine(void);\nint fine(void) { return 1; }\n");
     folder.write("t/broken.clh", "// a comment\n\nint wrong = undeclared_name;\n");
     const ScopedKernels kernels(folder);
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     const Error error = error_of([&] { device.kernel("t/broken"); });
     EXPECT_EQ(error.kind(), ErrorKind::device);
     EXPECT_EQ(error.where(), "t/broken.cl");
@@ -249,7 +250,7 @@ TEST(Device, MissingEntryPointIsNamed) {
     const TemporaryFolder folder;
     folder.write("t/one.cl", "kernel void another(global int* to) { to[0] = 1; }\n");
     const ScopedKernels kernels(folder);
-    Device device = Device::open(chosen());
+    Device device = open_trusted(chosen());
     EXPECT_THAT(error_of([&] { device.kernel("t/one"); }).line(),
                 testing::AllOf(testing::HasSubstr("entry point one"), testing::HasSubstr("CL_INVALID_KERNEL_NAME")));
 }
@@ -259,7 +260,7 @@ TEST_F(Launches, OnSubDevicesShareAContextAndAnAccount) {
     if (root.max_sub_devices < 2) GTEST_SKIP() << root.name << " cannot be divided";
     const Selection selection = select_devices(std::to_string(root.index) + "/2");
     ASSERT_EQ(selection.devices.size(), 2u);
-    Device first = Device::open(selection.devices[0]), second = Device::open(selection.devices[1]);
+    Device first = open_trusted(selection.devices[0]), second = open_trusted(selection.devices[1]);
     EXPECT_EQ(first.context()(), second.context()());
     EXPECT_EQ(first.facts().sub_device, 0);
     EXPECT_EQ(second.facts().sub_device, 1);

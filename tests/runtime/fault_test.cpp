@@ -1,5 +1,5 @@
 // What CLVR_FAULT means, without a device.
-#include "runtime/fault.hpp"
+#include "runtime/opencl/fault.hpp"
 
 #include "runtime/error.hpp"
 #include "tests/runtime/scoped.hpp"

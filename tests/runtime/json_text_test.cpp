@@ -1,5 +1,5 @@
 // JSON as clvr writes it.
-#include "runtime/json_text.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Work on all cores: everything is done once, whatever the count.
-#include "runtime/parallel.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <gtest/gtest.h>
 

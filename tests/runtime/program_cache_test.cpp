@@ -1,6 +1,6 @@
-#include "runtime/program_cache.hpp"
+#include "runtime/opencl/program_cache.hpp"
 
-#include "runtime/folders.hpp"
+#include "runtime/system/folders.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gtest/gtest.h>

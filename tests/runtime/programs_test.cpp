@@ -1,5 +1,5 @@
 // Programs that are built before they are needed, without a device.
-#include "runtime/programs.hpp"
+#include "runtime/opencl/programs.hpp"
 
 #include <gtest/gtest.h>
 

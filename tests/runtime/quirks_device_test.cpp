@@ -1,8 +1,8 @@
 // The workarounds, each tested where its driver is installed.
-#include "runtime/quirks.hpp"
+#include "runtime/drivers/quirks.hpp"
 
-#include "runtime/facts.hpp"
-#include "runtime/program.hpp"
+#include "runtime/drivers/facts.hpp"
+#include "runtime/opencl/program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Things that tests need for a while: a temporary folder, an environment variable, a kernel folder.
 #pragma once
-#include "runtime/source.hpp"
+#include "runtime/opencl/source.hpp"
 
 #include <cstdlib>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
 
 #include "runtime/error.hpp"
 #include "tests/runtime/scoped.hpp"
@@ -175,6 +175,7 @@ TEST(Remembered, SavedAndRecalled) {
     EXPECT_FALSE(load_remembered());
     std::vector<DeviceFacts> devices;
     for (const PlatformFacts& platform : rich_machine()) devices.insert(devices.end(), platform.devices.begin(), platform.devices.end());
+    devices[0].max_sub_devices = 2;
     save_remembered(remember({{3, 0}, {0, 2}}, devices));
     const auto parts = recall(load_remembered().value(), devices);
     ASSERT_TRUE(parts);
@@ -182,6 +183,9 @@ TEST(Remembered, SavedAndRecalled) {
     EXPECT_EQ((*parts)[0].device, 3u) << "the second of two with one name";
     EXPECT_EQ((*parts)[1].device, 0u);
     EXPECT_EQ((*parts)[1].sub_devices, 2);
+    devices[0].max_sub_devices = 0;
+    EXPECT_FALSE(recall(load_remembered().value(), devices)) << "it cannot be divided any more";
+    devices[0].max_sub_devices = 2;
     devices.pop_back();
     devices.pop_back();
     EXPECT_FALSE(recall(load_remembered().value(), devices)) << "one of them is gone";

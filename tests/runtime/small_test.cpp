@@ -1,9 +1,10 @@
 // Sizes, statuses, the account, the profile.
-#include "runtime/account.hpp"
-#include "runtime/check.hpp"
-#include "runtime/profile.hpp"
-#include "runtime/sha256.hpp"
-#include "runtime/size.hpp"
+#include "runtime/drivers/check.hpp"
+#include "runtime/opencl/account.hpp"
+#include "runtime/opencl/profile.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/system/size.hpp"
+#include "runtime/system/split_mix.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>
@@ -54,6 +55,18 @@ TEST(ErrorLine, IsOneLineWhateverAFileSays) {
     EXPECT_EQ(Error(ErrorKind::usage, "what").line(), "what");
 }
 
+TEST(Hashes, OfPieces) {
+    EXPECT_EQ(Hash().add("a").add("bc").hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    EXPECT_EQ(Hash(Hash::Kind::sha512).add("abc").hex().substr(0, 32), "ddaf35a193617abacc417349ae204131");
+    EXPECT_EQ(sha256_hex({"a", "bc"}), sha256_hex("1:a2:bc"));
+}
+
+TEST(SplitMix, HasThePublishedNumbers) {
+    SplitMix64 numbers(0);
+    EXPECT_EQ(numbers.next(), 0xe220a8397b1dcdafu);
+    EXPECT_EQ(numbers.next(), 0x6e789e6aa1b965f4u);
+}
+
 TEST(Check, NamesTheCallAndTheStatus) {
     const Error error = translated(cl::Error(CL_INVALID_KERNEL_ARGS, "clEnqueueNDRangeKernel"), "shade on a device");
     EXPECT_EQ(error.kind(), ErrorKind::device);
@@ -64,7 +77,7 @@ TEST(Check, NamesTheCallAndTheStatus) {
 
 TEST(Check, LackOfMemoryIsItsOwnKind) {
     for (const cl_int status : {CL_MEM_OBJECT_ALLOCATION_FAILURE, CL_OUT_OF_RESOURCES, CL_OUT_OF_HOST_MEMORY, CL_INVALID_BUFFER_SIZE})
-        EXPECT_EQ(translated(cl::Error(status, "clCreateBuffer"), "x").kind(), ErrorKind::memory);
+        EXPECT_EQ(translated(cl::Error(status, "clCreateBuffer"), "x").kind(), ErrorKind::device_memory);
 }
 
 TEST(Check, TranslatesOnlyOpenClErrors) {

@@ -1,4 +1,4 @@
-#include "runtime/source.hpp"
+#include "runtime/opencl/source.hpp"
 
 #include "runtime/error.hpp"
 

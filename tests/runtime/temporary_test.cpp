@@ -1,5 +1,5 @@
-#include "runtime/driver_trial.hpp"
-#include "runtime/temporary.hpp"
+#include "runtime/drivers/driver_trial.hpp"
+#include "runtime/system/temporary.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>

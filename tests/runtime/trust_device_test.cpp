@@ -1,7 +1,7 @@
-#include "runtime/trust.hpp"
+#include "runtime/trust/trust.hpp"
 
-#include "runtime/device.hpp"
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/opencl/device.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>
@@ -55,14 +55,14 @@ TEST(Trust, FaultyDeviceIsRefusedByNameUnlessRelaxed) {
     const ScopedKernels kernels(folder);
     const DeviceFacts facts = chosen();
     try {
-        Device::open(facts);
+        open_trusted(facts);
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::device);
         EXPECT_EQ(error.where(), facts.name);
         EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("divide ("), testing::HasSubstr("--relaxed")));
     }
-    EXPECT_NO_THROW(Device::open(facts, true));
+    EXPECT_NO_THROW(Device::open_untested(facts));
 }
 
 TEST(Trust, IsStoredPerProbeAndDriver) {

@@ -1,8 +1,8 @@
 // Tuning files: what is read and refused, what wins over what.
-#include "runtime/tuning.hpp"
+#include "runtime/tune/tuning.hpp"
 
-#include "runtime/embedded.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/embedded.hpp"
 #include "tests/runtime/scoped.hpp"
 #include "tests/runtime/warnings.hpp"
 

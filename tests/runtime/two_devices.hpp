@@ -1,7 +1,8 @@
 // Two devices out of the one under test.
 #pragma once
-#include "runtime/device.hpp"
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/opencl/device.hpp"
+#include "runtime/trust/trust.hpp"
 
 #include <vector>
 
@@ -12,9 +13,9 @@ inline std::vector<Device> open_two_devices() {
     const DeviceFacts root = select_devices("").devices.at(0);
     std::vector<Device> devices;
     if (root.sub_devices == 0 && root.max_sub_devices >= 2) {
-        for (const DeviceFacts& part : divide(root, 2)) devices.push_back(Device::open(part));
+        for (const DeviceFacts& part : divide(root, 2)) devices.push_back(open_trusted(part));
     } else {
-        devices = {Device::open(root), Device::open(root)};
+        devices = {open_trusted(root), open_trusted(root)};
     }
     return devices;
 }

@@ -2,7 +2,7 @@
 #include "host/selftest/golden.hpp"
 #include "host/selftest/selftest.hpp"
 #include "runtime/error.hpp"
-#include "runtime/source.hpp"
+#include "runtime/opencl/source.hpp"
 #include "tests/runtime/scoped.hpp"
 
 #include <gmock/gmock.h>

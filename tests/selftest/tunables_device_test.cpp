@@ -1,17 +1,18 @@
 // Tunables change speed and never a bit: every declared value, of ranges the ends and a few between, gives the golden bits.
+#include "host/phantom/phantom.hpp"
 #include "host/selftest/check.hpp"
 #include "host/selftest/golden.hpp"
 #include "host/train/tunables.hpp"
-#include "host/volume/phantom.hpp"
-#include "runtime/select.hpp"
-#include "runtime/sha256.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/trust/trust.hpp"
 
 #include <gtest/gtest.h>
 
 namespace clvr::selftest {
 namespace {
 
-Device open_device() { return Device::open(select_devices("").devices.front()); }
+Device open_device() { return open_trusted(select_devices("").devices.front()); }
 
 std::string phantom_hash(Device& device) {
     const Voxels v = make_phantom(device, "cloud", {Int3{37, 9, 6}, VoxelType::i16});

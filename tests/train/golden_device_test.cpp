@@ -39,7 +39,7 @@ TEST_P(EndToEnd, MeetsTheGoldenVectors) {
     const Buffer source = device.upload(planes, "source"), parameters = device.upload(model.flat(), "parameters");
     const auto prepared = [&](NeuralGrid& grid) {
         grid.set_parameters(parameters);
-        grid.assemble(source, width, height, plan.params(1), 0, 0, 0, 0);
+        grid.assemble(source, width, height, plan.params(1, 1), 0, 0, 0, 0);
         grid.forward(1);
     };
 

@@ -77,7 +77,7 @@ struct Setting {
         const Buffer source = device.upload(planes, "source");
         parameters = device.upload(model.flat(), "parameters");
         grid.set_parameters(parameters);
-        grid.assemble(source, c.width, c.height, plan.params(model.exposure ? exposure_of(frame) : 1), 0, 0, 0, 0);
+        grid.assemble(source, c.width, c.height, plan.params(frame), 0, 0, 0, 0);
 
         image.height = c.height, image.width = c.width;
         const int channels = static_cast<int>(model.channels.size());

@@ -52,7 +52,7 @@ TEST(MatrixLayers, AgreeWithTheDirectKernels) {
             for (float& v : target.channel("G")) v = 0.3f + 0.2f * static_cast<float>(n);
             std::vector<float> planes;
             plan.gather(frame, &target, {0, 0, width, height}, plan.known_light(frame), planes);
-            grid.assemble(device.upload(planes, "source"), width, height, plan.params(1), 0, 0, 4 * n, n);
+            grid.assemble(device.upload(planes, "source"), width, height, plan.params(1, 1), 0, 0, 4 * n, n);
             device.finish();
         }
         matrices.forward(grid, 2);

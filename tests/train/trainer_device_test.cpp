@@ -1,11 +1,11 @@
 // Training: gradients against finite differences, the same bits however the work is divided, interruption, overfitting, what is refused.
-#include "host/io/atomic_file.hpp"
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
+#include "host/pairs/folder.hpp"
 #include "host/train/checkpoint.hpp"
-#include "host/train/pairs.hpp"
 #include "host/train/trainer.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 #include "tests/denoise/batches.hpp"
 #include "tests/runtime/faulty_devices.hpp"
 #include "tests/runtime/scoped.hpp"
@@ -334,7 +334,7 @@ TEST_F(TrainerFiles, FaultyDevicesAreLeftOutOrWaitedFor) {
     expect_same_with("launch:120", 2, 1, 2); // within a step
     // The first one, which sums and takes the steps; after it has taken some, within a step.
     for (const char* fault : {"launch:37", "launch:150"}) expect_same_with(fault, 1, 1);
-    for (const auto& [fault, kind] : {std::pair("build:train/adam", ErrorKind::device), {"alloc:20", ErrorKind::memory}}) {
+    for (const auto& [fault, kind] : {std::pair("build:train/adam", ErrorKind::device), {"alloc:20", ErrorKind::device_memory}}) {
         const Warnings warnings;
         devices = faulty_devices(fault, 0);
         try {
@@ -467,7 +467,7 @@ TEST_F(TrainerFiles, RefusesABatchThatCannotFit) {
         train(c, "m.safetensors", false);
         FAIL();
     } catch (const Error& e) {
-        EXPECT_EQ(e.kind(), ErrorKind::memory);
+        EXPECT_EQ(e.kind(), ErrorKind::device_memory);
     }
 }
 

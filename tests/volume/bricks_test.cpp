@@ -1,4 +1,4 @@
-#include "host/volume/bricks.hpp"
+#include "host/volume/brick_layout.hpp"
 #include "runtime/error.hpp"
 #include "tests/reference/volume.hpp"
 #include "tests/volume/random_volume.hpp"
@@ -146,7 +146,7 @@ TEST(Bricks, ThatDoNotFitAreAMemoryError) {
             brick_layout(v, grid, std::vector<float>(grid.count(), 1), 4, limit);
             ADD_FAILURE() << "no error at " << limit;
         } catch (const Error& e) {
-            EXPECT_EQ(e.kind(), ErrorKind::memory);
+            EXPECT_EQ(e.kind(), ErrorKind::device_memory);
             EXPECT_EQ(std::string(e.what()).find('\n'), std::string::npos);
         }
 }
@@ -161,6 +161,45 @@ TEST(Bricks, OfAnInvisibleVolumeTakeNothing) {
     EXPECT_EQ(layout.pool_bytes, std::vector<std::size_t>{0});
     pack_bricks(v, layout, bricks_of(layout, 0), 100,
                 [](const unsigned char*, std::size_t, std::size_t) { ADD_FAILURE() << "nothing to pack"; });
+}
+
+TEST(Bricks, OfMoreThan2To31And2To33VoxelsLieWhereTheyShould) {
+    for (const Int3& dims :
+         {Int3{2048, 1024, 1025}, Int3{46341, 46342, 1}, Int3{2048, 2048, 2049}, Int3{131072, 65537, 1}, Int3{3, 5, 600000000}})
+        for (const VoxelType type : {VoxelType::u8, VoxelType::f32}) {
+            SCOPED_TRACE(testing::PrintToString(dims));
+            Voxels v; // without its bytes: a layout asks for the size alone
+            v.type = type;
+            v.dims = dims;
+            ASSERT_GT(v.count(), std::size_t{1} << 31);
+            MajorantGrid grid;
+            grid.log2_edge = majorant_log2_edge(dims);
+            for (int a = 0; a < 3; ++a) grid.cells[a] = (std::max(dims[a] - 2, 0) >> grid.log2_edge) + 1;
+            ASSERT_LE(grid.count(), std::size_t{1} << 21);
+            const int log2_edge = brick_log2_edge(dims);
+            const BrickLayout layout = brick_layout(v, grid, std::vector<float>(grid.count(), 1), log2_edge, no_limit);
+            std::uint64_t stored = 1; // voxels of all bricks: the lengths along each axis, multiplied
+            for (int a = 0; a < 3; ++a) {
+                const std::int64_t bases = std::max(dims[a] - 1, 1), bricks = ((bases - 1) >> log2_edge) + 1;
+                EXPECT_EQ(layout.bricks[a], bricks);
+                stored *= static_cast<std::uint64_t>(bases + 3 * bricks);
+            }
+            EXPECT_EQ(layout.present(), layout.offset.size());
+            EXPECT_EQ(layout.stored_bytes(), stored * voxel_bytes(type));
+            std::vector<std::uint64_t> filled(layout.pool_bytes.size());
+            for (std::size_t b = 0; b < layout.offset.size(); ++b) {
+                ASSERT_EQ(layout.offset[b], filled[layout.pool[b]]) << b;
+                filled[layout.pool[b]] += layout.brick_voxels(b);
+            }
+            for (std::size_t k = 0; k < filled.size(); ++k) {
+                EXPECT_EQ(layout.pool_bytes[k], filled[k] * voxel_bytes(type));
+                EXPECT_LE(filled[k], std::uint64_t{1} << 31);
+            }
+            const std::size_t last = layout.offset.size() - 1;
+            for (int a = 0; a < 3; ++a) // the last brick ends one voxel beyond the volume
+                EXPECT_EQ(layout.brick_low(last)[a] + layout.brick_length(last)[a], std::max(dims[a], 2) + 1);
+            EXPECT_EQ(v.geometry.to_world({dims[0] - 0.5, dims[1] - 0.5, dims[2] - 0.5})[2], dims[2] - 0.5);
+        }
 }
 
 TEST(Bricks, TakeAtMostAThirdMoreThanTheVoxels) {

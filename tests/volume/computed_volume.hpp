@@ -1,15 +1,16 @@
 // What tests ask of volumes that clvr computes.
 #pragma once
-#include "host/volume/phantom.hpp"
-#include "runtime/select.hpp"
-#include "runtime/sha256.hpp"
+#include "host/phantom/phantom.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/system/hashes.hpp"
+#include "runtime/trust/trust.hpp"
 #include "tests/reference/volume.hpp"
 
 #include <string_view>
 
 namespace clvr::testing {
 
-inline Device open_device() { return Device::open(select_devices().devices.at(0)); }
+inline Device open_device() { return open_trusted(select_devices().devices.at(0)); }
 
 inline std::string hash_of(const Voxels& v) {
     return sha256_hex(std::string_view(reinterpret_cast<const char*>(v.bytes.data()), v.bytes.size()));

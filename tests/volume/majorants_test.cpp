@@ -1,4 +1,5 @@
-#include "host/volume/bricks.hpp"
+#include "host/appearance/majorants.hpp"
+#include "host/appearance/visible_box.hpp"
 #include "tests/reference/volume.hpp"
 #include "tests/volume/random_volume.hpp"
 

@@ -1,4 +1,4 @@
-#include "host/volume/phantom.hpp"
+#include "host/phantom/phantom.hpp"
 #include "runtime/error.hpp"
 #include "tests/volume/computed_volume.hpp"
 

@@ -1,5 +1,5 @@
 // The computed volumes of machine parts, bare bone, smooth media, rock and fibres.
-#include "host/volume/phantom_parts.hpp"
+#include "host/phantom/parts.hpp"
 #include "tests/volume/computed_volume.hpp"
 
 #include <gtest/gtest.h>

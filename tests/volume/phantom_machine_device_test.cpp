@@ -1,5 +1,5 @@
 // The computed machine part: materials, cupping, threads.
-#include "host/volume/phantom_parts.hpp"
+#include "host/phantom/parts.hpp"
 #include "tests/volume/computed_volume.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Volumes and transfer tables made of seeded random numbers.
 #pragma once
-#include "host/volume/transfer_function.hpp"
+#include "host/appearance/transfer_function.hpp"
 
 #include <cstring>
 #include <limits>

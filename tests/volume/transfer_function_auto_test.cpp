@@ -1,5 +1,5 @@
 // The automatic transfer function: background vanishes, structure shows, whatever the values mean.
-#include "host/volume/transfer_function.hpp"
+#include "host/appearance/transfer_function.hpp"
 #include "host/volume/value_statistics.hpp"
 
 #include <gtest/gtest.h>

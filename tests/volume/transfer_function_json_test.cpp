@@ -1,6 +1,6 @@
 // Transfer functions from clvr's JSON and from ParaView's, and what is refused.
-#include "host/volume/srgb.hpp"
-#include "host/volume/transfer_function.hpp"
+#include "host/appearance/transfer_function.hpp"
+#include "host/frame/srgb.hpp"
 #include "runtime/error.hpp"
 
 #include <gmock/gmock.h>

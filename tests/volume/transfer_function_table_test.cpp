@@ -1,5 +1,5 @@
 // The device table of a transfer function.
-#include "host/volume/transfer_function.hpp"
+#include "host/appearance/transfer_function.hpp"
 #include "runtime/error.hpp"
 
 #include <gtest/gtest.h>

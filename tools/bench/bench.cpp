@@ -1,6 +1,6 @@
 #include "tools/bench/bench.hpp"
 
-#include "runtime/trust.hpp"
+#include "runtime/trust/trust.hpp"
 #include "tools/bench/stage.hpp"
 
 #include <fmt/format.h>

@@ -1,9 +1,10 @@
 // clvr-devices-bench: two parts of a device joined against one of them, on a render of 64 samples per pixel and on training steps. Both in
 // turn, medians of five. A part must have its share of the machine to itself: under other load the ratio says nothing.
+#include "host/phantom/phantom.hpp"
 #include "host/render/session.hpp"
 #include "host/train/training_step.hpp"
-#include "host/volume/phantom.hpp"
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/trust/trust.hpp"
 #include "tools/bench/statistics.hpp"
 
 #include <fmt/format.h>
@@ -65,7 +66,7 @@ void train(const std::vector<Device>& parts) {
 int main(int argc, char** argv) {
     try {
         std::vector<Device> parts;
-        for (const DeviceFacts& part : select_devices(argc > 1 ? argv[1] : "cpu/2").devices) parts.push_back(Device::open(part));
+        for (const DeviceFacts& part : select_devices(argc > 1 ? argv[1] : "cpu/2").devices) parts.push_back(open_trusted(part));
         fmt::print("{}, {} parts\n", parts.front().facts().name, parts.size());
         render(parts);
         train(parts);

@@ -1,7 +1,7 @@
 #include "tools/bench/jobs.hpp"
 
 #include "runtime/error.hpp"
-#include "runtime/tuning.hpp"
+#include "runtime/tune/tuning.hpp"
 #include "tools/bench/ceiling.hpp"
 #include "tools/bench/stage.hpp"
 
@@ -95,7 +95,7 @@ json measure_stage(const json& request) {
     row.unit = stage.unit;
     try {
         std::vector<Device> devices;
-        for (const json& name : request.at("devices")) devices.push_back(Device::open(find_device(device_from(name)), true));
+        for (const json& name : request.at("devices")) devices.push_back(Device::open_untested(find_device(device_from(name))));
         const DeviceFacts& facts = devices.front().facts();
         const Size size = request.at("tiny") ? Size::tiny : size_for(facts);
         row.size = size_name(size);
@@ -146,7 +146,7 @@ struct Prepared {
 };
 
 StageRun prepare_with(const DeviceFacts& facts, const Stage& stage, const Tunables& tunables) {
-    std::vector<Device> devices{Device::open(facts, true)};
+    std::vector<Device> devices{Device::open_untested(facts)};
     devices.front().set_tunables(tunables);
     StageRun run = stage.prepare(devices, size_for(facts));
     run.run();
@@ -233,14 +233,14 @@ Verdict verdict_from(const std::string& answer) {
 
 int serve() {
     const int answers = dup(STDOUT_FILENO); // drivers print to stdout what they like
-    if (answers < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return static_cast<int>(ErrorKind::internal);
+    if (answers < 0 || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return exit_code(ErrorKind::internal);
     for (std::string line; std::getline(std::cin, line);) {
         const json request = json::parse(line);
         const json answer = request.at("do") == "measure" ? measure_stage(request) : compare_candidate(request);
         const std::string text = answer.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
         for (std::size_t sent = 0; sent < text.size();) {
             const ssize_t n = write(answers, text.data() + sent, text.size() - sent);
-            if (n <= 0) return static_cast<int>(ErrorKind::internal);
+            if (n <= 0) return exit_code(ErrorKind::internal);
             sent += static_cast<std::size_t>(n);
         }
     }

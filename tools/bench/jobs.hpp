@@ -1,8 +1,8 @@
 // What the child process does: measures a stage, or compares a candidate of a tuning with what it may replace. Requests and answers are
 // JSON, a line each.
 #pragma once
-#include "runtime/facts.hpp"
-#include "runtime/tuning.hpp"
+#include "runtime/drivers/facts.hpp"
+#include "runtime/tune/tuning.hpp"
 #include "tools/bench/row.hpp"
 
 #include <optional>

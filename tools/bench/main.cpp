@@ -3,13 +3,18 @@
 #include "host/cli/described/share_files.hpp"
 #include "host/cli/described/single_values.hpp"
 #include "host/cli/file_options.hpp"
-#include "host/io/atomic_file.hpp"
+#include "host/cli/open_volume.hpp"
+#include "host/io/model/model_file.hpp"
+#include "runtime/choose/remembered.hpp"
+#include "runtime/choose/select.hpp"
 #include "runtime/error.hpp"
-#include "runtime/json_text.hpp"
 #include "runtime/program_end.hpp"
-#include "runtime/remembered.hpp"
-#include "runtime/select.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_text.hpp"
+#include "runtime/trust/trust.hpp"
 #include "tools/bench/bench.hpp"
+#include "tools/bench/bench_scene.hpp"
+#include "tools/bench/live.hpp"
 #include "tools/bench/stage.hpp"
 
 #include <CLI/CLI.hpp>
@@ -25,9 +30,9 @@ namespace clvr::bench {
 namespace {
 
 struct Options {
-    std::string selector, json, html, from;
+    std::string selector, json, html, from, volume;
     std::vector<std::string> stages;
-    bool quick = false, tune = false, save = false, explain = false, child = false, hashes = false, tiny = false;
+    bool quick = false, tune = false, save = false, explain = false, child = false, hashes = false, tiny = false, live = false;
 };
 
 /// What --save keeps: a device per task; the general one is that for rendering.
@@ -100,6 +105,25 @@ std::vector<std::string> stage_names() {
     return names;
 }
 
+/// Frames per second of a live view on each device, and where the time goes.
+void bench_live(const Options& o) {
+    std::vector<DeviceFacts> facts = list_devices();
+    if (!o.selector.empty() || facts.empty()) facts = select_devices(o.selector).devices;
+    const Model model = read_model("default");
+    for (const DeviceFacts& f : facts) {
+        std::vector<Device> devices{open_trusted(f)};
+        Scene scene = benchmark_scene(640, 640, 1);
+        if (!o.volume.empty()) scene.transfer.reset();
+        const PreparedVolume volume(o.volume.empty() ? benchmark_volume(o.tiny ? 64 : 256) : open_volume(o.volume, {}, devices));
+        fmt::print("{}, {}:\n{}", f.name, o.volume.empty() ? "256^3 u8" : o.volume,
+                   live_table(measure_live(devices.front(), volume, scene, model,
+                                           o.tiny    ? 0.1
+                                           : o.quick ? 2
+                                                     : 6)));
+        std::fflush(stdout);
+    }
+}
+
 /// The page of an earlier run's numbers, without measuring.
 void make_page_again(const Options& o) {
     if (o.html.empty()) throw Error(ErrorKind::usage, "needs --html, the page to write", "--from");
@@ -139,6 +163,8 @@ int run(int argc, char** argv) {
     app.add_option("--stage", o.stages, "Only this stage, as the table names it; may be given again")
         ->type_name("STAGE")
         ->group("Measuring");
+    app.add_flag("--live", o.live, "Measure a live view instead: frames per second, and where the time goes")->group("Measuring");
+    app.add_option("--volume", o.volume, "--live: this volume in place of a computed one")->type_name("VOLUME")->group("Measuring");
     app.add_flag("--quick", o.quick, "Shorter measurements, and a tuning within a minute of what matters most")->group("Measuring");
     app.add_flag("--tune", o.tune, "Find the fastest tunables of each device (at most 5 minutes each) and keep them for all commands")
         ->group("Measuring");
@@ -161,7 +187,7 @@ int run(int argc, char** argv) {
         make_page_again(o);
         return 0;
     }
-    bench_devices(o);
+    o.live ? bench_live(o) : bench_devices(o);
     return 0;
 }
 

@@ -2,7 +2,8 @@
 // threads. The same algorithms as kernels/render/free_flight.cl and march.cl (majorant grid, Philox, lattice, features), so that their
 // times can be compared.
 #pragma once
-#include "host/volume/bricks.hpp"
+#include "host/appearance/transfer_function.hpp"
+#include "host/volume/majorant_grid.hpp"
 #include "kernels/shared/render_params.h"
 #include "kernels/shared/volume_params.h"
 

@@ -1,6 +1,6 @@
 // Which device for which task, from what was measured.
 #pragma once
-#include "runtime/selector.hpp"
+#include "runtime/choose/selector.hpp"
 #include "tools/bench/row.hpp"
 
 #include <string>

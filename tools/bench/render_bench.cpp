@@ -1,7 +1,8 @@
 // clvr-render-bench: clvr's trackers beside native scalar C++ of the same algorithms, in one run, each side in turn.
 #include "host/render/marcher.hpp"
 #include "host/render/path_tracer.hpp"
-#include "runtime/select.hpp"
+#include "runtime/choose/select.hpp"
+#include "runtime/trust/trust.hpp"
 #include "tools/bench/bench_scene.hpp"
 #include "tools/bench/native.hpp"
 #include "tools/bench/statistics.hpp"
@@ -27,7 +28,7 @@ void compare(const char* name, double rays, const std::function<void()>& clvr_si
 
 int main(int argc, char** argv) {
     try {
-        Device device = Device::open(select_devices(argc > 1 ? argv[1] : "").devices.front());
+        Device device = open_trusted(select_devices(argc > 1 ? argv[1] : "").devices.front());
         const Scene scene = bench::benchmark_scene(640, 368, 1);
         const PreparedVolume& prepared = bench::prepared_volume(256);
         const bench::SceneOnDevice parts(device, prepared, scene);

@@ -1,6 +1,6 @@
 // What clvr-bench finds out: a row per device and stage, each with a status and a reason.
 #pragma once
-#include "runtime/facts.hpp"
+#include "runtime/drivers/facts.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // What clvr-bench measures: one descriptor per stage drives both its correctness and its speed.
 #pragma once
-#include "runtime/device.hpp"
+#include "runtime/opencl/device.hpp"
 #include "tools/bench/statistics.hpp"
 
 #include <functional>

@@ -1,5 +1,5 @@
 #include "runtime/error.hpp"
-#include "runtime/sha256.hpp"
+#include "runtime/system/hashes.hpp"
 #include "tools/bench/stage.hpp"
 
 #include <fmt/format.h>

@@ -37,7 +37,7 @@ std::shared_ptr<NeuralGrid> grid_with_frame(Device& d, const Model& model, const
     std::vector<float> planes;
     plan.gather(frame, nullptr, {0, 0, frame.width, frame.height}, plan.known_light(frame), planes);
     const Buffer source = d.upload(planes, "frame");
-    grid->assemble(source, frame.width, frame.height, plan.params(1), 0, 0, 0, 0);
+    grid->assemble(source, frame.width, frame.height, plan.params(1, 1), 0, 0, 0, 0);
     grid->forward(1);
     d.finish();
     return grid;

@@ -1,5 +1,5 @@
 // The device's own properties: launches, builds, bandwidth, arithmetic, samples.
-#include "runtime/check.hpp"
+#include "runtime/drivers/check.hpp"
 #include "tools/bench/ceiling.hpp"
 #include "tools/bench/stage.hpp"
 
@@ -74,7 +74,7 @@ StageRun build(std::vector<Device>& devices, bool cached) {
         return steady_seconds() - begin;
     };
     if (cached) once(d);
-    Device fresh = Device::open(d.facts(), true); // knows no program yet
+    Device fresh = Device::open_untested(d.facts()); // knows no program yet
     r.seconds = once(fresh);
     r.run = [] {};
     r.hash = [made] { return hash_of({*made}); };

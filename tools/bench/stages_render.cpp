@@ -1,6 +1,6 @@
 // Rendering, and the computing of a volume.
+#include "host/phantom/phantom.hpp"
 #include "host/render/marcher.hpp"
-#include "host/volume/phantom.hpp"
 #include "tools/bench/bench_scene.hpp"
 #include "tools/bench/stage.hpp"
 

@@ -1,5 +1,5 @@
 // Between host and device: from usual memory, from pinned memory, and by mapping.
-#include "runtime/check.hpp"
+#include "runtime/drivers/check.hpp"
 #include "tools/bench/stage.hpp"
 
 #include <cstring>

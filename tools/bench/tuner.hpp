@@ -1,7 +1,7 @@
 // The tuning of a device: every tunable, by measurement, with pruning, within a time.
 #pragma once
-#include "runtime/facts.hpp"
-#include "runtime/tuning.hpp"
+#include "runtime/drivers/facts.hpp"
+#include "runtime/tune/tuning.hpp"
 #include "tools/bench/jobs.hpp"
 #include "tools/bench/statistics.hpp"
 

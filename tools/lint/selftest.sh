@@ -56,7 +56,8 @@ if command -v clang-format-14 >/dev/null; then # else tests.cmake leaves this li
 fi
 
 expect accepts layers host/io/a.hpp <<<'#include "host/frame/frame.hpp"'
-for case in 'runtime/a.cpp host/volume/voxels.hpp' 'host/volume/a.cpp host/frame/frame.hpp' 'host/render/a.hpp host/io/picture/frame_file.hpp' \
+for case in 'runtime/a.cpp host/volume/voxels.hpp' 'runtime/system/a.cpp runtime/opencl/device.hpp' 'runtime/opencl/a.cpp runtime/trust/trust.hpp' \
+    'host/volume/a.cpp host/appearance/transfer_function.hpp' 'host/phantom/a.cpp host/appearance/transfer_function.hpp' 'host/volume/a.cpp host/frame/frame.hpp' 'host/render/a.hpp host/io/picture/frame_file.hpp' \
     'host/io/a.cpp host/cli/commands.hpp' 'host/cli/a.cpp tests/reference/a.hpp' 'host/cli/a.cpp frame.hpp' 'kernels/lib/a.clh render/a.cl'; do
     expect refuses layers "${case% *}" "${case#* }" <<<"#include \"${case#* }\""
 done

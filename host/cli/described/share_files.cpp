@@ -1,8 +1,8 @@
 #include "host/cli/described/share_files.hpp"
 #include "host/cli/described/completion.hpp"
 #include "host/cli/described/man_page.hpp"
-#include "host/io/atomic_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <filesystem>
 #include <fmt/format.h>

@@ -1,7 +1,8 @@
 #include "host/io/model/model_file.hpp"
 #include "host/io/model/embedded_models.hpp"
-#include "host/volume/json_fields.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/json_fields.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,6 @@ using nlohmann::json;
 namespace {
 
 constexpr const char* model_tag = "model/1";
-const char* const format_key = "clvr.format";
 const char* const settings_key = "clvr.model";
 
 /// The tensor's floats and shape, which must have so many dimensions.

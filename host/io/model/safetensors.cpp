@@ -1,7 +1,7 @@
 #include "host/io/model/safetensors.hpp"
-#include "host/io/atomic_file.hpp"
-#include "host/volume/json_fields.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_fields.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -1,6 +1,6 @@
 #include "host/io/picture/exr_lines.hpp"
 #include "runtime/error.hpp"
-#include "runtime/parallel.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <cstdint>

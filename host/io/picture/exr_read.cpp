@@ -1,11 +1,11 @@
-#include "host/io/atomic_file.hpp"
 #include "host/io/file_roles.hpp"
 #include "host/io/picture/exr_library.hpp"
 #include "host/io/picture/exr_lines.hpp"
 #include "host/io/picture/exr_names.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
-#include "runtime/parallel.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfChromaticities.h>
@@ -293,7 +293,7 @@ Frame read_exr(const std::string& path) {
     } catch (const Error& e) {
         throw Error(e.kind(), e.what(), path);
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::memory, "its pixels do not fit into the memory of this machine", path);
+        throw Error(ErrorKind::host_memory, "its pixels do not fit into the memory of this machine", path);
     } catch (const std::exception& e) {
         std::string why = e.what();
         std::replace(why.begin(), why.end(), '\n', ' ');

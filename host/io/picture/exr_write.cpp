@@ -1,8 +1,8 @@
-#include "host/io/atomic_file.hpp"
 #include "host/io/picture/exr_lines.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
-#include "runtime/parallel.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfHeader.h>

@@ -1,7 +1,7 @@
-#include "host/io/atomic_file.hpp"
-#include "host/io/picture/display_pixels.hpp"
+#include "host/frame/display_pixels.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <fmt/format.h>
 #include <memory>
@@ -17,7 +17,7 @@ constexpr std::size_t largest_jpeg_pixels = std::size_t{1} << 28;
 using Handle = std::unique_ptr<void, int (*)(tjhandle)>;
 
 Handle checked(tjhandle handle) {
-    if (!handle) throw Error(ErrorKind::memory, "there is no memory for libjpeg-turbo");
+    if (!handle) throw Error(ErrorKind::host_memory, "there is no memory for libjpeg-turbo");
     return {handle, tjDestroy};
 }
 

@@ -1,6 +1,6 @@
-#include "host/io/atomic_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <algorithm>
 #include <cmath>

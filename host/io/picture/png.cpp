@@ -1,8 +1,8 @@
-#include "host/io/atomic_file.hpp"
+#include "host/frame/display_pixels.hpp"
 #include "host/io/file_roles.hpp"
-#include "host/io/picture/display_pixels.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <fmt/format.h>
 #include <memory>

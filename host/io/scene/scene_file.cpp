@@ -1,9 +1,10 @@
 #include "host/io/scene/scene_file.hpp"
-#include "host/io/atomic_file.hpp"
+#include "host/appearance/transfer_function_json.hpp"
 #include "host/io/volume/dataset_path.hpp"
-#include "host/volume/json_fields.hpp"
-#include "host/volume/transfer_function_json.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
+#include "runtime/system/json_fields.hpp"
+#include "runtime/system/json_text.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -148,7 +149,7 @@ void for_each_path(Scene& scene, F&& change) {
 } // namespace
 
 std::string to_json(const Scene& scene) {
-    ordered_json to{{"clvr.format", scene_tag},      {"volume", scene.volume},         {"volume_sha256", scene.volume_sha256},
+    ordered_json to{{format_key, scene_tag},         {"volume", scene.volume},         {"volume_sha256", scene.volume_sha256},
                     {"frame", scene.reading.frame},  {"series", scene.reading.series}, {"allow_gaps", scene.reading.allow_gaps},
                     {"raw", raw_json(scene.reading)}};
     put_optional(to, "channel", scene.reading.channel);
@@ -181,9 +182,9 @@ Scene parse_scene(const std::string& json_text, const std::string& where) {
     const json file = parse_json(json_text, where);
     JsonFields fields(file, where);
     std::string format;
-    fields.required("clvr.format");
-    fields.get("clvr.format", format);
-    if (format != scene_tag) fields.fail("clvr.format", scene_tag);
+    fields.required(format_key);
+    fields.get(format_key, format);
+    if (format != scene_tag) fields.fail(format_key, scene_tag);
 
     Scene scene;
     fields.required("volume");

@@ -1,6 +1,6 @@
 // The files that a scene names.
 #pragma once
-#include "host/render/environment.hpp"
+#include "host/appearance/environment.hpp"
 #include "host/render/scene.hpp"
 
 #include <string>

@@ -73,7 +73,7 @@ void confine(std::size_t memory_bytes) {
         send(pipe, Kind::end, nullptr, 0);
     } catch (const Error& e) {
         const std::string text = e.what();
-        send(pipe, e.kind() == ErrorKind::memory ? Kind::memory_error : Kind::input_error, text.data(), text.size());
+        send(pipe, e.kind() == ErrorKind::host_memory ? Kind::memory_error : Kind::input_error, text.data(), text.size());
     } catch (const std::bad_alloc&) {
         const std::string text = "not enough memory for this volume";
         send(pipe, Kind::memory_error, text.data(), text.size());
@@ -144,7 +144,7 @@ std::size_t DecodingChild::read(void* to, std::size_t bytes) {
                 constexpr std::size_t longest = std::size_t{1} << 20;
                 std::string text(std::min<std::size_t>(message.bytes, longest), '\0');
                 if (!fill(text.data(), text.size())) failed("crashes on");
-                throw Error(message.kind == Kind::memory_error ? ErrorKind::memory : ErrorKind::input, text, file_);
+                throw Error(message.kind == Kind::memory_error ? ErrorKind::host_memory : ErrorKind::input, text, file_);
             }
             continue;
         }

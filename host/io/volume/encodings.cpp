@@ -98,7 +98,7 @@ struct Bzip2Bytes::Decoder {
     Decoder() { start(); }
     ~Decoder() { BZ2_bzDecompressEnd(&z); }
     void start() {
-        if (BZ2_bzDecompressInit(&z, 0, 0) != BZ_OK) throw Error(ErrorKind::memory, "bzip2 cannot start");
+        if (BZ2_bzDecompressInit(&z, 0, 0) != BZ_OK) throw Error(ErrorKind::host_memory, "bzip2 cannot start");
     }
 };
 
@@ -134,7 +134,7 @@ std::size_t Bzip2Bytes::read(void* to, std::size_t bytes) {
                 d.z.next_out = left.next_out, d.z.avail_out = left.avail_out;
             }
         } else if (status == BZ_MEM_ERROR) {
-            throw Error(ErrorKind::memory, "not enough memory to decompress this volume", path_);
+            throw Error(ErrorKind::host_memory, "not enough memory to decompress this volume", path_);
         } else if (status != BZ_OK) {
             bad_file(path_, "the compressed data is corrupt ({}): copy or download the file again",
                      status == BZ_DATA_ERROR_MAGIC ? "it does not start as bzip2 does" : "bzip2");

@@ -1,6 +1,6 @@
 #include "host/io/volume/format.hpp"
 #include "host/io/byte_stream.hpp"
-#include "host/io/volume/dicom/start.hpp"
+#include "host/io/dicom/start.hpp"
 #include "host/io/volume/file_pair.hpp"
 #include "host/io/volume/header_bytes.hpp"
 #include "host/io/volume/header_text.hpp"

@@ -159,8 +159,9 @@ struct Attribute {
 
 Hdf5File::Hdf5File(std::string path) : path_(std::move(path)) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1); // locks fail on read-only and network disks
-    id_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    if (access) H5Pset_file_locking(access, false, true); // locks fail on read-only and network disks
+    id_ = H5Fopen(path_.c_str(), H5F_ACC_RDONLY, access ? static_cast<hid_t>(access) : H5P_DEFAULT);
     if (id_ < 0) bad_file(path_, "libhdf5 cannot open it: the HDF5 file is truncated or damaged, or open for writing elsewhere");
 }
 

@@ -1,5 +1,5 @@
 #include "host/io/volume/samples.hpp"
-#include "runtime/parallel.hpp"
+#include "runtime/system/parallel.hpp"
 
 #include <algorithm>
 #include <array>
@@ -219,7 +219,8 @@ void check_geometry(const Geometry& g, const std::string& path) {
 void allocate_bytes(std::vector<unsigned char>& to, std::uint64_t bytes, const std::string& path) {
     const std::uint64_t machine = static_cast<std::uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
     if (bytes > machine)
-        throw Error(ErrorKind::memory, fmt::format("its voxels need {} bytes, this machine has {} bytes of memory", bytes, machine), path);
+        throw Error(ErrorKind::host_memory, fmt::format("its voxels need {} bytes, this machine has {} bytes of memory", bytes, machine),
+                    path);
     to.reserve(static_cast<std::size_t>(bytes));
     take_pages(to.data(), to.capacity());
     to.resize(static_cast<std::size_t>(bytes));

@@ -52,7 +52,7 @@ void check_capacity(std::uint64_t bytes, std::uint64_t capacity, const std::stri
 /// Throws Error{input} unless origin, spacing and direction are finite, spacing is > 0 and the direction is not singular.
 void check_geometry(const Geometry& g, const std::string& path);
 
-/// Sizes `to`, or v.bytes for v.dims and v.type. Throws Error{memory} when the machine does not have that much.
+/// Sizes `to`, or v.bytes for v.dims and v.type. Throws Error{host_memory} when the machine does not have that much.
 void allocate_bytes(std::vector<unsigned char>& to, std::uint64_t bytes, const std::string& path);
 void allocate(Voxels& v);
 /// Reverses the bytes of each of `n` samples.

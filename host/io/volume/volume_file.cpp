@@ -10,14 +10,13 @@
 #include "host/io/volume/samples.hpp"
 #include "host/io/volume/slices.hpp"
 #include "host/io/volume/tiff_ome.hpp"
+#include "runtime/system/hashes.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
 #include <map>
-#include <memory>
-#include <openssl/evp.h>
 
 namespace clvr {
 
@@ -174,21 +173,15 @@ Voxels read_volume(const std::string& path, const VolumeReadOptions& options) {
     } catch (const fs::filesystem_error& e) {
         throw Error(ErrorKind::input, fmt::format("cannot be read: {}", e.code().message()), path);
     } catch (const std::bad_alloc&) {
-        throw Error(ErrorKind::memory, "not enough memory for this volume", path);
+        throw Error(ErrorKind::host_memory, "not enough memory for this volume", path);
     }
 }
 
 std::string volume_sha256(const Voxels& v) {
-    const std::string head = fmt::format("{} {} {} {}\n", v.dims[0], v.dims[1], v.dims[2], voxel_type_name(v.type));
-    std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-    unsigned size = 0;
-    const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> hash(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
-    if (!hash || !EVP_DigestInit_ex(hash.get(), EVP_sha256(), nullptr) || !EVP_DigestUpdate(hash.get(), head.data(), head.size()) ||
-        !EVP_DigestUpdate(hash.get(), v.bytes.data(), v.bytes.size()) || !EVP_DigestFinal_ex(hash.get(), digest.data(), &size))
-        throw Error(ErrorKind::internal, "OpenSSL offers no SHA-256");
-    std::string hex;
-    for (unsigned i = 0; i < size; ++i) hex += fmt::format("{:02x}", digest[i]);
-    return hex;
+    return Hash()
+        .add(fmt::format("{} {} {} {}\n", v.dims[0], v.dims[1], v.dims[2], voxel_type_name(v.type)))
+        .add(v.bytes.data(), v.bytes.size())
+        .hex();
 }
 
 } // namespace clvr

@@ -1,8 +1,8 @@
 // NIfTI-1 files of volumes.
-#include "host/io/atomic_file.hpp"
 #include "host/io/volume/format.hpp"
 #include "host/io/volume/volume_file.hpp"
 #include "runtime/error.hpp"
+#include "runtime/system/atomic_file.hpp"
 
 #include <array>
 #include <cstring>
