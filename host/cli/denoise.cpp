@@ -31,6 +31,7 @@ struct DenoiseOptions {
     int spp = 0; ///< 0: as the frame says
     std::optional<std::string> tonemap;
     double exposure = 0;
+    ExrChannels channels;
     DeviceOptions device;
 };
 
@@ -186,7 +187,7 @@ void denoise(const DenoiseOptions& o) {
     if (o.spp < 0 || o.spp > largest_spp)
         throw Error(ErrorKind::usage, fmt::format("is {}; expected 1 to {}", o.spp, largest_spp), "--spp");
     const DenoiserView view = view_of(o.show);
-    PictureOutputs pictures(o.outputs);
+    PictureOutputs pictures(o.outputs, o.channels);
     std::optional<Model> named;
     if (!o.model.empty()) named = read_model(o.model);
     const Tonemap tonemap{o.tonemap.value_or(is_display_light(picture_format(o.input)) ? "none" : "filmic"), o.exposure};
@@ -243,6 +244,7 @@ void add_denoise_command(CLI::App& app) {
         ->type_name("guides|weights|levels")
         ->delimiter(',')
         ->group("Output");
+    add_channels_option(*c, o->channels);
     c->add_option("--exposure", o->exposure, "PNG and JPEG: exposure in stops [0]")->group("Output");
     c->add_option("--tonemap", o->tonemap, "PNG and JPEG: tone curve [filmic; none where IN is .png or .jpg]")
         ->type_name("filmic|aces|reinhard|none")

@@ -115,7 +115,7 @@ void render(RenderOptions o) {
     if (o.denoise && scene.mode != Mode::path) throw Error(ErrorKind::usage, "is for path traced pictures; leave out --mode", "--denoise");
     std::optional<Model> model;
     if (o.denoise) model = read_model(o.model);
-    PictureOutputs pictures(o.outputs, " (or over --background)");
+    PictureOutputs pictures(o.outputs, o.channels, " (or over --background)");
     if (!o.save_scene.empty()) check_writable(o.save_scene);
     const bool any_exr = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr_path);
 

@@ -206,6 +206,7 @@ void add_render_options(CLI::App& c, RenderOptions& o) {
     c.add_option("--turntable", o.turntable, "Write a numbered sequence of N views around the volume")->type_name("N")->group("Output");
     add_setting(c, o, "exposure");
     c.add_option("--tonemap", o.tonemap, "PNG and JPEG: tone curve [filmic]")->type_name("filmic|aces|reinhard|none")->group("Output");
+    add_channels_option(c, o.channels);
     c.add_flag("--no-features", o.no_features, "EXR: leave the noise-free features out")->group("Output");
     c.add_option("--save-scene", o.save_scene, "Write a scene JSON that gives this picture again")->type_name("FILE")->group("Output");
     c.add_flag("--list-tf", o.list_transfer, "List the presets of --tf")->group("Look");
@@ -249,7 +250,7 @@ Scene scene_of(const RenderOptions& o) {
         const auto v = numbers("--clip-plane", *o.clip_plane, 4, "NX,NY,NZ,OFFSET");
         s.clip_plane = ClipPlane{{v[0], v[1], v[2]}, v[3]};
     }
-    if (o.no_features) s.features = false;
+    if (o.no_features || o.channels.beauty()) s.features = false;
     validate(s);
     return s;
 }

@@ -1,6 +1,7 @@
 // The options of `clvr render`, as text from the command line to a Scene.
 #pragma once
 #include "host/cli/device_options.hpp"
+#include "host/cli/picture_outputs.hpp"
 #include "host/io/volume/volume_file.hpp"
 #include "host/render/scene.hpp"
 
@@ -19,6 +20,7 @@ namespace clvr {
 struct RenderOptions {
     std::string input;
     std::vector<std::string> outputs;
+    ExrChannels channels;
     VolumeReadOptions volume;
     std::optional<std::string> size, transfer, mode, shading, environment, background, tonemap, clip_box, clip_plane, eye, target;
     std::map<std::string, std::variant<double, int, std::uint64_t, bool>> settings; ///< by the keys of scene_settings()

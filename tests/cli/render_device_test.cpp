@@ -184,6 +184,30 @@ TEST_F(Render, OtherModesAndLights) {
     }
 }
 
+TEST_F(Render, ChannelsOfAnExr) {
+    const auto names = [&](const std::string& file) {
+        std::string all;
+        for (const auto& [name, values] : read_exr(path(file)).channels) all += name + " ";
+        return all;
+    };
+    ASSERT_EQ(run_ball({"-o", "all.exr", "-o", "all.png", "--channels", "all"}).exit_code, 0);
+    ASSERT_EQ(run_ball({"-o", "beauty.exr", "-o", "beauty.png", "--channels", "beauty"}).exit_code, 0);
+    ASSERT_EQ(run_ball({"-o", "over.exr", "--channels", "beauty", "--background", "1"}).exit_code, 0);
+    EXPECT_EQ(names("beauty.exr"), "A B G R ");
+    EXPECT_EQ(names("over.exr"), "B G R ") << "opaque";
+    const Frame all = read_exr(path("all.exr")), beauty = read_exr(path("beauty.exr"));
+    EXPECT_GT(all.channels.size(), 15u);
+    for (const auto& [name, values] : beauty.channels) EXPECT_EQ(values, all.at(name)) << name;
+    EXPECT_EQ(beauty.attributes.at("clvr.spp"), all.attributes.at("clvr.spp"));
+    EXPECT_EQ(pixel_hash(read_png(path("beauty.png"))), pixel_hash(read_png(path("all.png"))));
+    ASSERT_EQ(Child({"denoise", path("all.exr"), "-o", path("clean.exr"), "--channels", "beauty"}, {}, folder.path()).wait().exit_code, 0);
+    EXPECT_EQ(names("clean.exr"), "A B G R ");
+    const Outcome wrong = run_ball({"-o", "wrong.exr", "--channels", "some"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.err, ::testing::HasSubstr("expected beauty or all"));
+    EXPECT_FALSE(exists("wrong.exr"));
+}
+
 TEST_F(Render, DenoisesTheSameBitsOnOneDeviceOnPartsAndAfterwards) {
     for (const std::string spp : {"1", "3"}) {
         SCOPED_TRACE(spp);
