@@ -192,7 +192,7 @@ TEST_F(Render, ChannelsOfAnExr) {
     };
     ASSERT_EQ(run_ball({"-o", "all.exr", "-o", "all.png", "--channels", "all"}).exit_code, 0);
     ASSERT_EQ(run_ball({"-o", "beauty.exr", "-o", "beauty.png", "--channels", "beauty"}).exit_code, 0);
-    ASSERT_EQ(run_ball({"-o", "over.exr", "--channels", "beauty", "--background", "1"}).exit_code, 0);
+    ASSERT_EQ(run_ball({"-o", "over.exr", "--channels", "beauty", "--background", "#405060"}).exit_code, 0);
     EXPECT_EQ(names("beauty.exr"), "A B G R ");
     EXPECT_EQ(names("over.exr"), "B G R ") << "opaque";
     const Frame all = read_exr(path("all.exr")), beauty = read_exr(path("beauty.exr"));
