@@ -270,10 +270,11 @@ Denoiser::Denoiser(const Device& device, const Model& model) {
 }
 Denoiser::~Denoiser() = default;
 
-void Denoiser::prepare(const Frame& frame, bool show_levels) {
+void Denoiser::prepare(int width, int height, bool variances, bool show_levels) {
     Device& device = state_->device;
-    NeuralGrid::prepare(device, state_->model, frame.width, frame.height, show_levels);
-    if (!has_variances(frame)) return;
+    state_->light.prepare();
+    NeuralGrid::prepare(device, state_->model, width, height, show_levels);
+    if (!variances) return;
     for (const char* stage : {"denoise/give_back", "denoise/blend_bands", "denoise/blend_sums", "denoise/blend_by_variance"})
         device.prepare(stage);
 }
@@ -308,7 +309,7 @@ void Denoiser::denoise(Film& film) {
 Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     State& s = *state_;
     s.plan.check(frame);
-    prepare(frame, view.levels);
+    prepare(frame.width, frame.height, has_variances(frame), view.levels);
     s.repaired = 0;
     Frame done = frame;
     const int levels = static_cast<int>(s.model.levels.size());

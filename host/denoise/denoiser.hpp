@@ -34,14 +34,16 @@ public:
     /// the film holds; other channels stay. The film holds no value that is not finite and lies over nothing.
     void denoise(Film& film);
 
+    /// Has the programs built that a picture takes, on a thread of their own, while its channels are made or gathered. `variances`: it has
+    /// them.
+    void prepare(int width, int height, bool variances, bool show_levels = false);
+
     /// Values of the last frame that were not finite.
     std::size_t repaired() const;
 
 private:
     struct State;
     std::unique_ptr<State> state_;
-    /// Has the programs built that a frame takes, while its channels are gathered.
-    void prepare(const Frame& frame, bool show_levels);
 };
 
 } // namespace clvr

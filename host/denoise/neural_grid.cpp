@@ -136,11 +136,26 @@ shared::DenoiseParams NeuralGrid::params_of(const Device& device, const Model& m
     return p;
 }
 
-std::size_t NeuralGrid::bytes(const Device& device, const Model& model, const BatchShape& b) {
+std::vector<ScratchBuffer> NeuralGrid::scratch(const Device& device, const Model& model, const BatchShape& b) {
     const shared::DenoiseParams p = params_of(device, model, b.width, b.height);
-    const std::size_t planes = model.channels.size() + model.hidden + model.outputs() + 3 + (b.show ? 3 * p.levels : 0) +
-                               (b.target ? 3 : 0) + (model.control_variate ? 3 : 0);
-    return b.images * (planes * p.plane * 4 + std::size_t{32} * b.width * b.height + std::size_t{16} * p.cells);
+    const std::size_t images = static_cast<std::size_t>(b.images), pixels = images * static_cast<std::size_t>(b.width) * b.height;
+    const auto planes = [&](int channels) { return images * channels * p.plane * 4 + 64; }; // rows are read 16 pixels at once
+    return {{"network input", planes(static_cast<int>(model.channels.size())), true},
+            {"hidden layer", planes(model.hidden), true},
+            {"guides", planes(model.outputs()), true},
+            {"denoised picture", planes(3 + (b.show ? 3 * p.levels : 0)), true},
+            {"target", planes(b.target ? 3 : 0), true},
+            {"known light", planes(model.control_variate ? 3 : 0), true},
+            {"colours to splat", pixels * 16, false},
+            {"albedo", pixels * 16, false},
+            // Slicing reads cells in pairs. The last pair's second cell has the weight 0, but no NaN may lie there.
+            {"bilateral grids", std::size_t{16} * (p.cells * images + 1), true}};
+}
+
+std::size_t NeuralGrid::bytes(const Device& device, const Model& model, const BatchShape& shape) {
+    std::size_t sum = 0;
+    for (const ScratchBuffer& buffer : scratch(device, model, shape)) sum += buffer.bytes;
+    return sum;
 }
 
 NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShape& shape)
@@ -159,22 +174,12 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
 
     params_buffer_ = device_.upload(std::vector<shared::DenoiseParams>{params_}, "denoiser settings");
     channel_list_ = device_.upload(ChannelPlan(model, shape.target).channels(), "channel list");
-    const int results = 3 + (shape.show ? 3 * levels_ : 0);
-    struct {
-        Buffer& buffer;
-        int channels;
-        const char* label;
-    } planes[] = {{input_, channels_, "network input"},      {hidden_, model.hidden, "hidden layer"},
-                  {outputs_, model.outputs(), "guides"},     {result_, results, "denoised picture"},
-                  {target_, shape.target ? 3 : 0, "target"}, {known_, model.control_variate ? 3 : 0, "known light"}};
-    for (auto& [buffer, channels, label] : planes) {
-        buffer = device_.buffer(plane_floats(channels) * 4 + 64 /* rows are read 16 pixels at once */, label);
-        device_.fill(buffer, 0);
+    const std::vector<ScratchBuffer> wanted = scratch(device_, model, shape);
+    Buffer* const buffers[] = {&input_, &hidden_, &outputs_, &result_, &target_, &known_, &splatted_, &remodulation_, &cells_};
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+        *buffers[k] = device_.buffer(wanted[k].bytes, wanted[k].label);
+        if (wanted[k].zeros) device_.fill(*buffers[k], 0);
     }
-    splatted_ = device_.buffer(pixels() * 16, "colours to splat");
-    remodulation_ = device_.buffer(pixels() * 16, "albedo");
-    cells_ = device_.buffer(std::size_t{16} * (params_.cells * shape.images + 1), "bilateral grids") /* slicing reads cells in pairs */;
-    device_.fill(cells_, 0); // the last pair's second cell has the weight 0, but is read: no NaN may lie there
 }
 
 void NeuralGrid::prepare(Device& device, const Model& model, int width, int height, bool show) {

@@ -48,6 +48,13 @@ private:
     Work work(const shared::DenoiseParams& shape, int images) const;
 };
 
+/// Device memory that a filter takes beside the film.
+struct ScratchBuffer {
+    const char* label;
+    std::size_t bytes;
+    bool zeros; ///< holds zeros at first: borders of planes
+};
+
 class NeuralGrid {
 public:
     /// Allocates the batch's buffers. Throws Error{device_memory}.
@@ -64,7 +71,8 @@ public:
     /// From the assembled images to result().
     void forward(int images);
 
-    /// Device bytes of a batch.
+    /// Memory of a batch, and its sum [bytes].
+    static std::vector<ScratchBuffer> scratch(const Device& device, const Model& model, const BatchShape& shape);
     static std::size_t bytes(const Device& device, const Model& model, const BatchShape& shape);
     /// Shapes of the planes and grids.
     static shared::DenoiseParams params_of(const Device& device, const Model& model, int width, int height);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace clvr {
 
@@ -22,16 +23,19 @@ shared::LightPlanes light_planes(const Film& film) {
 PictureLight::PictureLight(const Device& device, const Model& model)
     : device_(device), wants_exposure_(model.exposure), wants_known_(ChannelPlan(model, false).reads_known_light()),
       varying_(model.control_variate_cell > 0), edge_(varying_ ? model.control_variate_cell : usual_edge),
-      block_(std::lcm(exposure_block, edge_)), lanes_(NeuralGrid::pixel_width(device)) {
-    const Defines width{{"CLVR_WIDTH", std::to_string(lanes_)}};
-    if (wants_exposure_) {
-        Defines defines = width;
-        defines["CLVR_BLOCK"] = std::to_string(exposure_block);
-        exposure_columns_ = device_.kernel("denoise/exposure_columns", defines);
-    }
+      block_(std::lcm(exposure_block, edge_)), lanes_(NeuralGrid::pixel_width(device)) {}
+
+Defines PictureLight::defines(bool of_exposure) const {
+    Defines defines{{"CLVR_WIDTH", std::to_string(lanes_)}};
+    if (of_exposure) defines["CLVR_BLOCK"] = std::to_string(exposure_block);
+    return defines;
+}
+
+void PictureLight::prepare() {
+    if (wants_exposure_) device_.prepare("denoise/exposure_columns", defines(true));
     if (wants_known_)
-        light_columns_ = device_.kernel("denoise/light_columns", width), known_light_ = device_.kernel("denoise/known_light", width);
-    if (wants_exposure_ || wants_known_) block_sums_ = device_.kernel("denoise/block_sums");
+        for (const char* stage : {"denoise/light_columns", "denoise/known_light"}) device_.prepare(stage, defines(false));
+    if (wants_exposure_ || wants_known_) device_.prepare("denoise/block_sums");
 }
 
 void PictureLight::begin(int width, int height, bool alpha) {
@@ -39,6 +43,13 @@ void PictureLight::begin(int width, int height, bool alpha) {
     blocks_.assign(area(blocks_of(width, exposure_block), blocks_of(height, exposure_block)), {});
     for (auto& cells : cells_) cells.assign(area(blocks_of(width, edge_), blocks_of(height, edge_)), {});
     shares_across_ = shares_down_ = 0;
+    if (std::exchange(loaded_, true)) return;
+    if (wants_exposure_) exposure_columns_ = device_.kernel("denoise/exposure_columns", defines(true));
+    if (wants_known_) {
+        light_columns_ = device_.kernel("denoise/light_columns", defines(false));
+        known_light_ = device_.kernel("denoise/known_light", defines(false));
+    }
+    if (wants_exposure_ || wants_known_) block_sums_ = device_.kernel("denoise/block_sums");
 }
 
 std::vector<float> PictureLight::folded(int width, int rows, int edge) {

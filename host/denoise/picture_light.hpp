@@ -17,6 +17,8 @@ namespace clvr {
 class PictureLight {
 public:
     PictureLight(const Device& device, const Model& model);
+    /// Has the programs built on a thread of their own.
+    void prepare();
     /// Of the next picture.
     void begin(int width, int height, bool alpha);
     /// Parts of a picture begin at multiples of this, and end there or at its border [pixels].
@@ -32,6 +34,7 @@ private:
     Device device_;
     bool wants_exposure_, wants_known_, varying_, alpha_ = false;
     int edge_, block_, lanes_;
+    bool loaded_ = false; // the kernels
     Kernel exposure_columns_, light_columns_, block_sums_, known_light_;
     int width_ = 0, height_ = 0;
     std::vector<ExposureBlock> blocks_;          // of the picture, in rows
@@ -39,6 +42,7 @@ private:
     Buffer columns_, sums_, shares_;
     int shares_across_ = 0, shares_down_ = 0; // 0: shares_ are not there yet
 
+    Defines defines(bool of_exposure) const;
     /// Sums of blocks of `edge` pixels along x, from sums of columns of `rows` rows.
     std::vector<float> folded(int width, int rows, int edge);
     void fit();

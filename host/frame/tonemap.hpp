@@ -34,8 +34,7 @@ private:
 /// The frame's R G B A with R G B as display light, premultiplied again: the curve acts on the straight colour C / A.
 Frame tonemapped(const Frame& frame, const Tonemap& tonemap);
 
-/// The sRGB transfer function (IEC 61966-2-1) for 0..1, both ways.
+/// The sRGB transfer function (IEC 61966-2-1) for 0..1; srgb_decode (frame/srgb.hpp) is its inverse.
 double srgb_encoded(double linear);
-double srgb_decoded(double encoded);
 
 } // namespace clvr

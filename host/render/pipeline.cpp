@@ -7,6 +7,10 @@ void Pipeline::run(RenderSession& session, const Scene& scene, RenderControl con
     Scene wanted = scene;
     wanted.features |= model_.has_value();
     control.light |= model_ && reads_light(*model_);
+    if (model_) { // programs are built while others compute
+        std::vector<Device> devices = session.devices();
+        denoiser_on(devices.front()).prepare(scene.width, scene.height, scene.spp > 1);
+    }
     take(session, wanted, control);
     if (model_) denoise(session);
 }

@@ -1,5 +1,5 @@
 // A stag beetle in Hounsfield units: thin shells of chitin around little, wing cases with furrows, jaws, legs, hairs. Parts from
-// host/volume/phantom_beetle.cpp.
+// host/phantom/beetle.cpp.
 #include "lib/solids.clh"
 
 __kernel void beetle(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,

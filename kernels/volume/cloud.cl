@@ -1,5 +1,5 @@
 // A smooth field such as a spray of fuel that burns: soft blobs in space that turbulence bends, over the whole range of values. Blobs from
-// host/volume/phantom_cloud.cpp.
+// host/phantom/cloud.cpp.
 #include "lib/solids.clh"
 
 __kernel void cloud(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,

@@ -1,4 +1,4 @@
-// Bundles of fibres, glass and carbon, in a faint resin that fills the field of view, in Hounsfield units. Parts from host/volume/phantom_fibres.cpp.
+// Bundles of fibres, glass and carbon, in a faint resin that fills the field of view, in Hounsfield units. Parts from host/phantom/fibres.cpp.
 #include "lib/solids.clh"
 
 __kernel void fibres(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,

@@ -1,7 +1,7 @@
 // A head in Hounsfield units, computed: skin, skull, brain, vessels with contrast agent. A work-item makes CLVR_WIDTH voxels along x;
 // a launch makes some slices.
 //
-// Bodies are solids (lib/solids.clh) of the parts in host/volume/phantom_anatomy.cpp; tissues are painted one over the other, each with a ramp of
+// Bodies are solids (lib/solids.clh) of the parts in host/phantom/head.cpp; tissues are painted one over the other, each with a ramp of
 // partial volume.
 #include "lib/skull.clh"
 

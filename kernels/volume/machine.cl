@@ -1,5 +1,5 @@
 // A machine part as an industrial CT scanner shows it, in Hounsfield units: cast aluminium with voids, steel in it, air around. Beam hardening makes
-// values fall towards the axis of the scan (cupping) and beside steel. Parts from host/volume/phantom_machine.cpp.
+// values fall towards the axis of the scan (cupping) and beside steel. Parts from host/phantom/machine.cpp.
 #include "lib/solids.clh"
 
 __kernel void machine(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,

@@ -1,5 +1,5 @@
 // A bare skull on a holder, in Hounsfield units: the head's bones and teeth (lib/skull.clh) without what fills them, wires that hold the jaw, ring
-// artefacts of the scanner. Parts from host/volume/phantom_skull.cpp.
+// artefacts of the scanner. Parts from host/phantom/skull.cpp.
 #include "lib/skull.clh"
 
 __kernel void skull(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,

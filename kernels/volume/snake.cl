@@ -1,5 +1,5 @@
 // A young snake, coiled in its egg, in Hounsfield units: leathery shell (opened above), flesh with organs, skull, spine and ribs. Parts from
-// host/volume/phantom_snake.cpp.
+// host/phantom/snake.cpp.
 #include "lib/solids.clh"
 
 __kernel void snake(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,

@@ -1,4 +1,4 @@
-// A tree of vessels with contrast agent in a lobe of soft tissue, in Hounsfield units. Parts from host/volume/phantom_vessels.cpp.
+// A tree of vessels with contrast agent in a lobe of soft tissue, in Hounsfield units. Parts from host/phantom/vessels.cpp.
 #include "lib/solids.clh"
 
 __kernel void vessels(__global short* out, __constant PhantomParams* params, __global const PhantomPart* parts, __global const uint* start,

@@ -75,7 +75,7 @@ TEST(KnownLight, SharesVaryOverCells) {
     }
     const KnownLight one(f), many(f, 32);
     EXPECT_EQ(one.shares_at(1, 5).key, one.shares(1).key);
-    EXPECT_NEAR(many.shares(1).key, one.shares(1).key, 1e-12); // another order of sums
+    EXPECT_NEAR(many.shares(1).key, one.shares(1).key, 1e-10); // another order of sums
     EXPECT_GT(one.shares(1).key, 1.0);
     EXPECT_LT(one.shares(1).key, 1.4);
     const std::size_t row = 64 * 256;

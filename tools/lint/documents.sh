@@ -1,5 +1,5 @@
 #!/bin/bash
-# Refuses citations of what the project does not have: documents and sections (path/README.md, "Section"), files that a README names, and the documents that clvr was
+# Refuses citations of what the project does not have: documents and sections (path/README.md, "Section"), files that a README or a comment names, and the documents that clvr was
 # once designed by. Usage: documents.sh ROOT
 set -euo pipefail
 cd "$1"
@@ -29,6 +29,11 @@ for my $file (@ARGV) {
         while ($list =~ /"([^"]+)"/g) {
             (my $section = $1) =~ s/\s+/ /g;
             complain("$name: $document has no section \"$section\"") unless has_section($document, $section);
+        }
+    }
+    if ($name =~ /\.(?:[ch]pp|clh?|h)$/ && $name !~ m{^tests/}) {
+        while ($text =~ m{(?<![\w/.])((?:host|kernels|runtime|tests|tools)/[a-z0-9_./-]+\.(?:[ch]pp|clh?|h))\b}g) {
+            complain("$name: there is no $1") unless -f $1;
         }
     }
     next if $name !~ m{(?:^|/)README\.md$};

@@ -72,6 +72,7 @@ expect refuses documents host/a.hpp 'there is no host/README.md' <<<'/// host/RE
 expect refuses documents host/README.md 'no section "Pictures"' < <(printf '## Frames\n`host/README.md`, "Frames" and "Pictures"\n')
 expect refuses documents host/README.md 'no section "Two words"' < <(printf '## Words\nas host/README.md, "Two\nwords" says\n')
 expect refuses documents host/README.md 'there is no host/gone.cpp' <<<'as `host/gone.cpp` does'
+expect refuses documents kernels/lib/a.clh 'there is no host/gone.cpp' <<<'// As host/gone.cpp does it.'
 for document in DESIGN.md 'SPEC section 3' 'FACTS.md' 'kernel_study/vec.clh'; do
     expect refuses documents kernels/lib/a.clh 'which no clone has' <<<"// as $document says"
 done
