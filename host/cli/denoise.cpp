@@ -18,6 +18,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
+#include <exception>
 #include <filesystem>
 #include <optional>
 
@@ -181,6 +182,22 @@ Model model_for(const DenoiseOptions& o, const std::optional<Model>& named, Fram
     return *named;
 }
 
+/// Has the device build, while the picture's pixels are read, the programs that its header asks for. A guess: a wrong one costs their time,
+/// and what is wrong with the picture is said when it is read.
+void prepare_for_header(const DenoiseOptions& o, const std::optional<Model>& named, const DenoiserView& view, const Device& device) {
+    try {
+        if (picture_format(o.input) != PictureFormat::exr) return;
+        Frame header = exr_outline(o.input);
+        if (o.spp > 0) header.attributes["clvr.spp"] = std::to_string(o.spp);
+        std::vector<std::pair<std::string, Model>> candidates;
+        for (const auto& name : embedded_model_names()) candidates.emplace_back(name, read_model(name));
+        const Model model = named ? *named : choose_model(candidates, header).model;
+        Denoiser(device, model).prepare(header.width, header.height, header.has("variance.R"), view.levels);
+    } catch (const Error& e) {
+        spdlog::debug("{}: nothing is prepared: {}", o.input, e.what());
+    }
+}
+
 void denoise(const DenoiseOptions& o) {
     if (o.outputs.empty())
         throw Error(ErrorKind::usage, "no output given: add -o picture.png (or .jpg, or .exr for all channels)", "clvr denoise");
@@ -192,10 +209,18 @@ void denoise(const DenoiseOptions& o) {
     if (!o.model.empty()) named = read_model(o.model);
     const Tonemap tonemap{o.tonemap.value_or(is_display_light(picture_format(o.input)) ? "none" : "filmic"), o.exposure};
     const ToneCurve known(tonemap);
+    std::vector<Device> devices;
+    std::exception_ptr no_device; // said after what is wrong with the file: reading it needs none
+    try {
+        devices = open_devices(o.device);
+        prepare_for_header(o, named, view, devices.front());
+    } catch (...) {
+        no_device = std::current_exception();
+    }
     Frame frame = input_frame(o);
     std::vector<std::string> made;
     const Model model = model_for(o, named, frame, made);
-    std::vector<Device> devices = open_devices(o.device);
+    if (no_device) std::rethrow_exception(no_device);
     std::size_t repaired = 0;
     frame = about(o.input, [&] {
         return on_first(devices, [&](Device& device) {

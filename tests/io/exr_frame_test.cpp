@@ -39,6 +39,11 @@ TEST(ExrFrameTest, RoundTripKeepsEveryBitAndAttribute) {
     const Frame back = read_exr(folder / "a.exr");
     EXPECT_EQ(pixel_hash(back), pixel_hash(frame));
     EXPECT_EQ(back.attributes, frame.attributes);
+    const Frame outline = exr_outline(folder / "a.exr");
+    EXPECT_EQ(outline.window(), frame.window());
+    EXPECT_EQ(outline.attributes, frame.attributes);
+    ASSERT_EQ(outline.channels.size(), frame.channels.size());
+    for (const auto& [name, values] : outline.channels) EXPECT_TRUE(frame.has(name) && values.empty()) << name;
     EXPECT_EQ(folder.entries(), 1u) << "no temporary file is left";
 }
 

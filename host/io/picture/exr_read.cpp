@@ -259,7 +259,8 @@ void read_part(Imf::InputPart& part, const ChannelNames& names, const Imath::Box
     part.readPixels(window.min.y, window.max.y);
 }
 
-Frame read_all(const std::string& path) {
+/// `values`: or leave the channels empty.
+Frame read_all(const std::string& path, bool values) {
     use_all_cores();
     check_attribute_sizes(path);
     Imf::MultiPartInputFile file(path.c_str());
@@ -271,13 +272,14 @@ Frame read_all(const std::string& path) {
         Imf::InputPart part(file, chosen.number);
         const Imf::Header& header = part.header();
         check_header(header, chosen.names);
-        if (!chosen.names.empty()) {
+        if (!chosen.names.empty() && values) {
             probe_last_line(part, chosen.names);
             read_part(part, chosen.names, all, frame);
         }
+        for (const auto& [theirs, ours] : chosen.names) frame.channels[ours];
         add_attributes(header, frame);
     }
-    if (parts.front().chroma) read_chroma(path, frame);
+    if (parts.front().chroma && values) read_chroma(path, frame);
     note_primaries(file.header(parts.front().number), frame);
     spread_luminance(frame);
     return frame;
@@ -285,11 +287,13 @@ Frame read_all(const std::string& path) {
 
 } // namespace
 
-Frame read_exr(const std::string& path) {
+namespace {
+
+Frame read_named(const std::string& path, bool values) {
     will_read(path);
     check_readable(path);
     try {
-        return read_all(path);
+        return read_all(path, values);
     } catch (const Error& e) {
         throw Error(e.kind(), e.what(), path);
     } catch (const std::bad_alloc&) {
@@ -301,5 +305,11 @@ Frame read_exr(const std::string& path) {
         throw Error(ErrorKind::input, fmt::format("is no complete OpenEXR image: {}", why), path);
     }
 }
+
+} // namespace
+
+Frame read_exr(const std::string& path) { return read_named(path, true); }
+
+Frame exr_outline(const std::string& path) { return read_named(path, false); }
 
 } // namespace clvr

@@ -15,6 +15,8 @@ void write_exr(const Frame& frame, const std::string& path);
 /// (exr_names.hpp); luminance and chroma become R G B, luminance alone too. Of several views the first, of mipmaps the largest. What is
 /// left out or chosen stands in the notes. Throws Error{input}.
 Frame read_exr(const std::string& path);
+/// The same without values: size, attributes, and channels that are empty. Luminance and chroma alone have none.
+Frame exr_outline(const std::string& path);
 
 /// The part that the frame shows as 8-bit sRGB PNG, RGBA with straight alpha when alpha is not 1 everywhere, else RGB. Exposure and curve
 /// act on the straight colour C / A: so a silhouette has the colour of the surface beside it, over any page that the picture is laid
