@@ -23,7 +23,8 @@ inline bool few_registers(const DeviceFacts& d, const Tunables& set) {
     return width == 4 || width == 8;
 }
 
-/// Vectors of a row that a work-item of a convolution takes; by default 2 with few registers, else 5, or 4 where that fills the rows better.
+/// Vectors of a row that a work-item of a convolution takes; by default 2 with few registers, else 5, or 4 where that fills the rows
+/// better.
 inline constexpr Tunable conv_vectors{"conv_vectors",
                                       AllowedValues::whole(1, 6),
                                       [](const DeviceFacts& d, const Tunables& set) { return few_registers(d, set) ? 2 : 5; },
@@ -33,13 +34,10 @@ inline constexpr Tunable conv_vectors{"conv_vectors",
                                       true};
 
 /// Output channels that a convolution computes at once, at most: they must divide the layer's.
-inline constexpr Tunable conv_block{"conv_block",
-                                    AllowedValues::whole(1, 10),
-                                    [](const DeviceFacts& d, const Tunables& set) { return few_registers(d, set) ? 7 : 5; },
-                                    {"GuideNet"},
-                                    {1, 2, 4, 5, 7, 10},
-                                    {1, 2, 4, 5, 7, 10},
-                                    true};
+inline constexpr Tunable conv_block{
+    "conv_block", AllowedValues::whole(1, 10), [](const DeviceFacts& d, const Tunables& set) { return few_registers(d, set) ? 7 : 5; },
+    {"GuideNet"}, {1, 2, 4, 5, 7, 10},         {1, 2, 4, 5, 7, 10},
+    true};
 
 /// Work-items of a convolution's group along a row, and rows. No more along a row than fill it: rows are padded to whole groups.
 inline constexpr Tunable conv_group_x{"conv_group_x",

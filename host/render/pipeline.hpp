@@ -11,9 +11,9 @@ namespace clvr {
 class Pipeline {
 public:
     explicit Pipeline(std::optional<Model> model = {}) : model_(std::move(model)) {}
-    /// Brings the session to the scene, of which it has set all but spp, mode and features: samples, features (where the scene wants them or
-    /// the model reads them), denoiser, blend. Then session.frame() or picture() lays the background and gives the picture. Light features are
-    /// marched where `control.light` says so or the model reads them. Throws as take() and Denoiser do.
+    /// Brings the session to the scene, of which it has set all but spp, mode and features: samples, features (where the scene wants them
+    /// or the model reads them), denoiser, blend. Then session.frame() or picture() lays the background and gives the picture. Light
+    /// features are marched where `control.light` says so or the model reads them. Throws as take() and Denoiser do.
     void run(RenderSession& session, const Scene& scene, RenderControl control);
 
 private:

@@ -139,8 +139,8 @@ private:
     void see_environment(Worker& w, std::uint32_t first, std::uint32_t count, Buffer& out);
 };
 
-/// Brings a session to a scene of which it has set all but spp, mode and features: features when wanted, then samples (anew, or more of them:
-/// RenderControl::go_on) or a march. Throws Error{interrupted} when cancelled before one pass was done.
+/// Brings a session to a scene of which it has set all but spp, mode and features: features when wanted, then samples (anew, or more of
+/// them: RenderControl::go_on) or a march. Throws Error{interrupted} when cancelled before one pass was done.
 void take(RenderSession& session, const Scene& scene, const RenderControl& control = {});
 /// The same, and the frame over the scene's background. `frame.attributes` gets "clvr.spp" (samples reached).
 Frame render(RenderSession& session, const Scene& scene, const RenderControl& control = {});

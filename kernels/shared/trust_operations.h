@@ -1,5 +1,5 @@
-// What the trust probe compares in bits, read by OpenCL C (trust.cl, on vectors of any width) and by C++ (runtime/trust/trust.cpp, the truth).
-// CLVR_FLOAT(name, expression) has a float as its result, CLVR_UINT a 32-bit unsigned integer. Operands:
+// What the trust probe compares in bits, read by OpenCL C (trust.cl, on vectors of any width) and by C++ (runtime/trust/trust.cpp, the
+// truth). CLVR_FLOAT(name, expression) has a float as its result, CLVR_UINT a 32-bit unsigned integer. Operands:
 //   a b c  normal, 2^-31 < |x| < 2^61; in half of the vectors c is near -a*b, so that a second rounding shows
 //   r      |r| < 2^31: halves, small values and both zeros among them;  s  in [0, 2^32)
 //   t      denormal;  w  in [2^-20, 1);  u v  any 32 bits

@@ -25,7 +25,9 @@ std::vector<unsigned char> encode_png(const DisplayPixels& pixels) {
     return encoded;
 }
 
-std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap) { return encode_png(display_pixels(frame, tonemap, true)); }
+std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap) {
+    return encode_png(display_pixels(frame, tonemap, true));
+}
 
 void write_png(const DisplayPixels& pixels, const std::string& path) {
     const std::vector<unsigned char> encoded = encode_png(pixels);
