@@ -13,7 +13,7 @@
 namespace clvr {
 namespace {
 
-Programs::Key key(const std::string& stage) { return {stage, {}}; }
+Programs::Key stage_key(const std::string& stage) { return {stage, {}}; }
 
 TEST(ProgramsTest, EachIsBuiltOnceWhoeverAsksFirst) {
     std::atomic<int> builds{0};
@@ -21,10 +21,10 @@ TEST(ProgramsTest, EachIsBuiltOnceWhoeverAsksFirst) {
         ++builds;
         return cl::Program();
     });
-    for (const char* stage : {"a", "b", "a"}) programs.prepare(key(stage));
+    for (const char* stage : {"a", "b", "a"}) programs.prepare(stage_key(stage));
     std::vector<std::future<cl::Program>> asking;
     for (const char* stage : {"a", "b", "c", "c", "a"})
-        asking.push_back(std::async(std::launch::async, [&programs, stage] { return programs.get(key(stage)); }));
+        asking.push_back(std::async(std::launch::async, [&programs, stage] { return programs.get(stage_key(stage)); }));
     for (auto& asked : asking) asked.get();
     EXPECT_EQ(builds, 3);
     programs.get({"a", {{"X", "1"}}});
@@ -37,12 +37,12 @@ TEST(ProgramsTest, AFailureReachesWhoAsksForTheProgram) {
         if (broken && k.first == "bad") throw std::runtime_error("does not build");
         return {};
     });
-    programs.prepare(key("bad"));
-    programs.get(key("good"));
-    EXPECT_THROW(programs.get(key("bad")), std::runtime_error);
-    EXPECT_THROW(programs.get(key("bad")), std::runtime_error);
+    programs.prepare(stage_key("bad"));
+    programs.get(stage_key("good"));
+    EXPECT_THROW(programs.get(stage_key("bad")), std::runtime_error);
+    EXPECT_THROW(programs.get(stage_key("bad")), std::runtime_error);
     broken = false;
-    EXPECT_NO_THROW(programs.get(key("bad")));
+    EXPECT_NO_THROW(programs.get(stage_key("bad")));
 }
 
 TEST(ProgramsTest, TheEndWaitsForTheBuildThatRunsAndLeavesOutTheOthers) {
@@ -56,7 +56,7 @@ TEST(ProgramsTest, TheEndWaitsForTheBuildThatRunsAndLeavesOutTheOthers) {
             ended.wait();
             return cl::Program();
         });
-        for (const char* stage : {"a", "b", "c"}) programs->prepare(key(stage));
+        for (const char* stage : {"a", "b", "c"}) programs->prepare(stage_key(stage));
         begun.get_future().wait();
         end = std::async(std::launch::async, [&programs] { programs.reset(); });
         EXPECT_EQ(end.wait_for(std::chrono::milliseconds(50)), std::future_status::timeout);
