@@ -6,27 +6,54 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
 
 namespace clvr {
 
-void for_each_index(std::size_t count, const std::function<void(std::size_t)>& work) {
-    if (count == 1) {
-        work(0);
-        return;
-    }
-    // TBB orders caller, calls and caller by itself. The counter says so once more, for ThreadSanitizer, which does not see into TBB.
-    std::atomic<std::size_t> order{0};
-    order.fetch_add(1, std::memory_order_release);
-    const tbb::blocked_range<std::size_t> one_each(0, count, 1);
+namespace {
+
+#ifdef __SANITIZE_THREAD__
+/// ThreadSanitizer does not see what orders TBB's tasks; so there, threads take the indices.
+void share(std::size_t count, const std::function<void(std::size_t)>& work) {
+    std::atomic<std::size_t> next{0};
+    std::mutex failing;
+    std::exception_ptr failure;
+    const auto take = [&] {
+        try {
+            for (std::size_t i = next++; i < count; i = next++) work(i);
+        } catch (...) {
+            const std::lock_guard lock(failing);
+            if (!failure) failure = std::current_exception();
+            next = count;
+        }
+    };
+    std::vector<std::thread> others;
+    for (int k = 0; k < 3; ++k) others.emplace_back(take);
+    take();
+    for (std::thread& other : others) other.join();
+    if (failure) std::rethrow_exception(failure);
+}
+#else
+void share(std::size_t count, const std::function<void(std::size_t)>& work) {
     tbb::parallel_for(
-        one_each,
+        tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& some) {
-            order.load(std::memory_order_acquire);
             for (std::size_t i = some.begin(); i != some.end(); ++i) work(i);
-            order.fetch_add(1, std::memory_order_release);
         },
         tbb::simple_partitioner());
-    order.load(std::memory_order_acquire);
+}
+#endif
+
+} // namespace
+
+void for_each_index(std::size_t count, const std::function<void(std::size_t)>& work) {
+    if (count == 1)
+        work(0);
+    else
+        share(count, work);
 }
 
 std::size_t part_count(std::size_t count) {
