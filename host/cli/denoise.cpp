@@ -148,6 +148,16 @@ std::string layers_of(const std::vector<std::string>& channels) {
     return layers;
 }
 
+/// All of them, read once.
+const std::vector<std::pair<std::string, Model>>& models_inside() {
+    static const auto all = [] {
+        std::vector<std::pair<std::string, Model>> models;
+        for (const auto& name : embedded_model_names()) models.emplace_back(name, read_model(name));
+        return models;
+    }();
+    return all;
+}
+
 /// The model for the frame: `named`, else the first one inside clvr whose channels the frame has. Channels that the model reads and that
 /// can be made are added to the frame, and named in `made`.
 Model model_for(const DenoiseOptions& o, const std::optional<Model>& named, Frame& frame, std::vector<std::string>& made) {
@@ -155,11 +165,7 @@ Model model_for(const DenoiseOptions& o, const std::optional<Model>& named, Fram
         if (!channels.said.empty()) spdlog::info("{}: {}", o.input, channels.said);
         made.insert(made.end(), channels.names.begin(), channels.names.end());
     };
-    const auto choose = [&] {
-        std::vector<std::pair<std::string, Model>> candidates;
-        for (const auto& name : embedded_model_names()) candidates.emplace_back(name, read_model(name));
-        return about(o.input, [&] { return choose_model(candidates, frame); });
-    };
+    const auto choose = [&] { return about(o.input, [&] { return choose_model(models_inside(), frame); }); };
     if (!named) {
         keep(add_normal(frame));
         const ModelChoice choice = choose();
@@ -189,9 +195,7 @@ void prepare_for_header(const DenoiseOptions& o, const std::optional<Model>& nam
         if (picture_format(o.input) != PictureFormat::exr) return;
         Frame header = exr_outline(o.input);
         if (o.spp > 0) header.attributes["clvr.spp"] = std::to_string(o.spp);
-        std::vector<std::pair<std::string, Model>> candidates;
-        for (const auto& name : embedded_model_names()) candidates.emplace_back(name, read_model(name));
-        const Model model = named ? *named : choose_model(candidates, header).model;
+        const Model model = named ? *named : choose_model(models_inside(), header).model;
         Denoiser(device, model).prepare(header.width, header.height, header.has("variance.R"), view.levels);
     } catch (const Error& e) {
         spdlog::debug("{}: nothing is prepared: {}", o.input, e.what());

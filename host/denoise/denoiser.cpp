@@ -339,7 +339,7 @@ Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     const std::vector<std::string> names = s.names_to_upload(frame, true);
     const bool at_once = size.pixels() == frame.pixels();
     s.light.begin(frame.width, frame.height, frame.has("A"));
-    if (!at_once) s.look_at(frame, size);
+    if (!at_once && s.light.is_wanted()) s.look_at(frame, size);
     for (int y = 0; y < frame.height; y += size.height)
         for (int x = 0; x < frame.width; x += size.width) {
             const Region inner{x, y, std::min(size.width, frame.width - x), std::min(size.height, frame.height - y)},

@@ -35,7 +35,8 @@ FittedShares fit_shares(std::vector<LightFit> cells, int across, bool varying);
 
 /// The known part of each colour: a key + b sky + c albedo opacity. The shares a, b, c bring it closest to the frame's noisy radiance, by
 /// weighted least squares over the pixels with opacity above 1/256. Light that was scattered more than once follows the direct light so
-/// closely that shares above 1 hold part of it. The sums run over the pixels in order, in double: the same bits everywhere.
+/// closely that shares above 1 hold part of it. The sums run over the pixels of a cell in order, then over the cells, in double: the same
+/// bits everywhere. (PictureLight is the same on a device, with a cell's sums in float.)
 ///
 /// `cell` > 0: the shares vary over the picture. Each square cell of so many pixels a side has its own. They are fitted to the cell and its
 /// neighbours (weighted by a tent) and pulled towards the whole frame's shares, the more the noisier the cell is; between the centres of

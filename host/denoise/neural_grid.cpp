@@ -13,7 +13,7 @@ bool is_cpu(const Device& device) { return device.facts().type == DeviceType::cp
 int conv_width(const Device& device) { return device.tunable(tunables::conv_width); }
 /// Vectors of a row that a work-item takes: with many registers 5, or 4 where that fills rows of this width better.
 int conv_vectors(const Device& device, int row_width) {
-    if (conv_width(device) == 4 || conv_width(device) == 8) return device.tunable(tunables::conv_vectors);
+    if (tunables::few_registers(conv_width(device))) return device.tunable(tunables::conv_vectors);
     const auto padded = [&](int vectors) { return (row_width - 1) / (conv_width(device) * vectors) * vectors; };
     return device.tunable(tunables::conv_vectors, padded(5) <= padded(4) ? 5 : 4);
 }

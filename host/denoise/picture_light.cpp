@@ -35,7 +35,7 @@ void PictureLight::prepare() {
     if (wants_exposure_) device_.prepare("denoise/exposure_columns", defines(true));
     if (wants_known_)
         for (const char* stage : {"denoise/light_columns", "denoise/known_light"}) device_.prepare(stage, defines(false));
-    if (wants_exposure_ || wants_known_) device_.prepare("denoise/block_sums");
+    if (is_wanted()) device_.prepare("denoise/block_sums");
 }
 
 void PictureLight::begin(int width, int height, bool alpha) {
@@ -49,7 +49,7 @@ void PictureLight::begin(int width, int height, bool alpha) {
         light_columns_ = device_.kernel("denoise/light_columns", defines(false));
         known_light_ = device_.kernel("denoise/known_light", defines(false));
     }
-    if (wants_exposure_ || wants_known_) block_sums_ = device_.kernel("denoise/block_sums");
+    if (is_wanted()) block_sums_ = device_.kernel("denoise/block_sums");
 }
 
 std::vector<float> PictureLight::folded(int width, int rows, int edge) {

@@ -19,6 +19,8 @@ public:
     PictureLight(const Device& device, const Model& model);
     /// Has the programs built on a thread of their own.
     void prepare();
+    /// Whether the model asks for anything of the whole picture.
+    bool is_wanted() const { return wants_exposure_ || wants_known_; }
     /// Of the next picture.
     void begin(int width, int height, bool alpha);
     /// Parts of a picture begin at multiples of this, and end there or at its border [pixels].

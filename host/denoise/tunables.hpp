@@ -16,27 +16,29 @@ inline constexpr Tunable conv_width{"conv_width",
                                     {1, 4, 8, 16},
                                     true};
 
-/// Whether a convolution's sums must fit into 16 vector registers (AVX2, SSE): 2 vectors of 7 channels do, 5 of 5 spill. On two cores of an
-/// AMD EPYC with AVX2 that takes 0.55 times the time (datasets/results/live.md).
-inline bool few_registers(const DeviceFacts& d, const Tunables& set) {
-    const int width = value_of(conv_width, d, set);
-    return width == 4 || width == 8;
-}
+/// Whether, with vectors of so many lanes, a convolution's sums must fit into 16 vector registers (AVX2, SSE): 2 vectors of 7 channels do,
+/// 5 of 5 spill. On two cores of an AMD EPYC with AVX2 that takes 0.55 times the time (datasets/results/live.md).
+inline bool few_registers(int width) { return width == 4 || width == 8; }
 
 /// Vectors of a row that a work-item of a convolution takes; by default 2 with few registers, else 5, or 4 where that fills the rows
 /// better.
-inline constexpr Tunable conv_vectors{"conv_vectors",
-                                      AllowedValues::whole(1, 6),
-                                      [](const DeviceFacts& d, const Tunables& set) { return few_registers(d, set) ? 2 : 5; },
-                                      {"GuideNet"},
-                                      {1, 2, 3, 4, 5, 6},
-                                      {1, 2, 3, 4, 5, 6},
-                                      true};
+inline constexpr Tunable conv_vectors{
+    "conv_vectors",
+    AllowedValues::whole(1, 6),
+    [](const DeviceFacts& d, const Tunables& set) { return few_registers(value_of(conv_width, d, set)) ? 2 : 5; },
+    {"GuideNet"},
+    {1, 2, 3, 4, 5, 6},
+    {1, 2, 3, 4, 5, 6},
+    true};
 
 /// Output channels that a convolution computes at once, at most: they must divide the layer's.
 inline constexpr Tunable conv_block{
-    "conv_block", AllowedValues::whole(1, 10), [](const DeviceFacts& d, const Tunables& set) { return few_registers(d, set) ? 7 : 5; },
-    {"GuideNet"}, {1, 2, 4, 5, 7, 10},         {1, 2, 4, 5, 7, 10},
+    "conv_block",
+    AllowedValues::whole(1, 10),
+    [](const DeviceFacts& d, const Tunables& set) { return few_registers(value_of(conv_width, d, set)) ? 7 : 5; },
+    {"GuideNet"},
+    {1, 2, 4, 5, 7, 10},
+    {1, 2, 4, 5, 7, 10},
     true};
 
 /// Work-items of a convolution's group along a row, and rows. No more along a row than fill it: rows are padded to whole groups.

@@ -36,7 +36,7 @@ private:
 /// How the voxels look on one device: transfer table, majorants, extinction, clip, and where the volume is empty.
 class DeviceAppearance {
 public:
-    /// Throws Error{device_memory}.
+    /// Waits for the device. Throws Error{device_memory}.
     DeviceAppearance(Device& device, const Classified& c, const shared::VolumeParams& params, const DeviceBricks& bricks);
     void append_to(BufferList& list) const;
     /// [VolumeParams::coarse] the mean opacity of a cell, where something in it is visible; else minus its distance to the next such cell,

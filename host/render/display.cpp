@@ -1,21 +1,12 @@
 #include "host/render/display.hpp"
 #include "host/render/pixel_numbers.hpp"
+#include "host/render/two_floats.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace clvr {
-
-namespace {
-
-/// A double as the sum of two floats (kernels/lib/two_floats.clh).
-std::array<float, 2> two_floats(double v) {
-    const auto high = static_cast<float>(v);
-    return {high, static_cast<float>(v - high)};
-}
-
-} // namespace
 
 Display::Display(const Device& device) : device_(device), kernel_(device_.kernel("render/display")) {
     std::vector<std::array<float, 2>> least;

@@ -7,7 +7,7 @@ void Pipeline::run(RenderSession& session, const Scene& scene, RenderControl con
     Scene wanted = scene;
     wanted.features |= model_.has_value();
     control.light |= model_ && reads_light(*model_);
-    if (model_) { // programs are built while others compute
+    if (model_ && !denoiser_) { // programs are built while others compute
         std::vector<Device> devices = session.devices();
         denoiser_on(devices.front()).prepare(scene.width, scene.height, scene.spp > 1);
     }

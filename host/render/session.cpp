@@ -1,6 +1,6 @@
-#include "host/render/session.hpp"
 #include "host/render/params.hpp"
 #include "host/render/pixel_numbers.hpp"
+#include "host/render/session_parts.hpp"
 #include "host/render/tunables.hpp"
 #include "runtime/system/host_memory.hpp"
 #include "runtime/system/size.hpp"
@@ -39,8 +39,6 @@ void refuse_what_host_memory_cannot_hold(int width, int height) {
                     "--size");
 }
 
-const std::vector<std::string> beauty_channels{"R", "G", "B", "A", "variance.R", "variance.G", "variance.B"};
-
 /// Channels of a march in the order of its planes.
 std::vector<std::string> march_channels(March march, bool lit) {
     static const std::vector<std::string> features{
@@ -50,49 +48,7 @@ std::vector<std::string> march_channels(March march, bool lit) {
     return {all.begin(), all.begin() + march_planes(march, lit)};
 }
 
-/// 1 / (n (n - 1)), which makes the variance of the mean of a sum of squared deviations, as the sum of two floats; 0 below two samples.
-std::array<float, 2> variance_scale(int samples) {
-    if (samples < 2) return {0, 0};
-    const double scale = 1.0 / (static_cast<double>(samples) * (samples - 1));
-    const auto high = static_cast<float>(scale);
-    return {high, static_cast<float>(scale - high)};
-}
-
 } // namespace
-
-/// A marcher, and what it was made for.
-struct RenderSession::Marching {
-    March kind;
-    int rays;
-    bool lit;
-    Marcher marcher;
-};
-
-/// One device's share of the work.
-struct RenderSession::Worker {
-    Device device;
-    std::shared_ptr<DeviceVolume> volume; // sub-devices of one context share it
-    std::optional<DeviceLights> lights;
-    std::optional<KeyLights> keys;       // of the view
-    std::shared_ptr<const SkyLight> sky; // of all views; shared as the volume is
-    std::optional<PathTracer> tracer;
-    std::optional<Marching> marching;       // kept for the next view
-    std::optional<PixelSums> before, after; // of a chunk, while the picture is kept on the host
-    bool compared = false;                  // with the others
-
-    /// Before what they refer to goes.
-    void forget_passes() { tracer.reset(), marching.reset(); }
-};
-
-/// The picture on the host.
-struct RenderSession::HostSums {
-    struct Sums {
-        std::vector<shared::float4> mean, deviation;
-    };
-    Sums sums, next; // of whole passes, and of the pass that runs
-    Frame channels;
-    std::optional<Frame> filtered; // over nothing
-};
 
 RenderSession::RenderSession(const std::vector<Device>& devices) : scheduler_(devices) {
     for (const Device& d : devices) workers_.push_back(std::make_unique<Worker>(Worker{d, {}, {}, {}, {}, {}, {}, {}, {}, false}));
@@ -229,8 +185,8 @@ void RenderSession::prepare_light(bool draft) {
 /// Where the picture is kept: decided once for a size.
 void RenderSession::prepare_picture() {
     if (film_ || host_) return;
-    // Beauty and variance, features, noisy input, known light, noise level, and some for other filters.
-    constexpr std::size_t planes = 7 + 16 + 4 + 3 + 1 + 9;
+    // Beauty and variance, features, noisy input, known light, and some for other filters.
+    constexpr std::size_t planes = 7 + 16 + 4 + 3 + 10;
     constexpr std::size_t bytes_per_pixel = 64 + 4 * planes; // the sums twice
     Device& first = workers_[scheduler_.left().front()]->device;
     const std::size_t plane_bytes = std::size_t{4} * scene_.width * scene_.height;
@@ -404,130 +360,6 @@ bool RenderSession::march(March kind, int rays, bool lit, const RenderControl& c
     else
         samples_ = resolved_ = rays, traced_ = false;
     return true;
-}
-
-/// Brings the planes R G B A and variance.* up to the sums.
-void RenderSession::resolve() {
-    if (resolved_ == samples_) return;
-    const auto [scale, rest] = variance_scale(samples_);
-    if (film_) {
-        Device& d = film_->device();
-        Kernel kernel = d.kernel("render/resolve");
-        d.launch(kernel, {numbers_}, kernel.group(64), {60.0 * numbers_, 0}, sums_->mean, sums_->deviation, film_->width(), film_->height(),
-                 scale, rest, film_->planes(), static_cast<cl_uint>(film_->find("R")));
-    } else {
-        std::array<std::vector<float>*, 7> to{};
-        for (std::size_t c = 0; c < to.size(); ++c) to[c] = &host_->channels.channel(beauty_channels[c]);
-        for_pixels(scene_.width, scene_.height, [&](std::uint32_t i, std::size_t at) {
-            const shared::float4 &m = host_->sums.mean[i], &d = host_->sums.deviation[i];
-            (*to[0])[at] = m.x, (*to[1])[at] = m.y, (*to[2])[at] = m.z, (*to[3])[at] = m.w;
-            const auto variance = [scale = scale, rest = rest](float v) {
-                return std::fma(v, scale, v * rest);
-            }; // as kernels/render/resolve.cl
-            (*to[4])[at] = variance(d.x), (*to[5])[at] = variance(d.y), (*to[6])[at] = variance(d.z);
-        });
-    }
-    resolved_ = samples_;
-    drop_filtered();
-}
-
-/// The picture is the samples' mean again.
-void RenderSession::drop_filtered() {
-    if (film_) film_->denoised = false;
-    if (host_) host_->filtered.reset();
-}
-
-void RenderSession::set_filtered(Frame filtered) {
-    if (!host_) throw Error(ErrorKind::internal, "the picture lies on a device", "RenderSession::set_filtered");
-    host_->filtered = std::move(filtered);
-}
-
-Film* RenderSession::film() {
-    if (!film_) return nullptr;
-    if (film_->denoised) resolved_ = 0; // the samples' mean again
-    resolve();
-    film_->samples = samples_;
-    return film_.get();
-}
-
-Frame RenderSession::frame(const Background& background, bool beauty_alone) {
-    resolve();
-    Frame frame;
-    frame.width = scene_.width, frame.height = scene_.height;
-    std::vector<std::string> names;
-    if (!beauty_alone) names = marched_;
-    const bool denoised = film_ && film_->denoised;
-    if (samples_ > 0)
-        names.insert(names.end(), beauty_channels.begin(), beauty_channels.begin() + (traced_ && samples_ > 1 && !beauty_alone ? 7 : 4));
-    if (denoised && !beauty_alone) names.insert(names.end(), {"noisy.R", "noisy.G", "noisy.B", "noisy.A"});
-    if (denoised) frame.attributes["clvr.denoised"] = "1";
-    if (host_ && host_->filtered) {
-        frame = *host_->filtered;
-        if (beauty_alone)
-            for (auto at = frame.channels.begin(); at != frame.channels.end();)
-                at = std::find(names.begin(), names.end(), at->first) == names.end() ? frame.channels.erase(at) : std::next(at);
-    } else {
-        for (const std::string& name : names) frame.channels[name] = film_ ? film_->download(name) : host_->channels.at(name);
-    }
-    if (samples_ > 0) frame.attributes["clvr.spp"] = std::to_string(samples_);
-    if (samples_ > 0) lay_background(frame, background);
-    return frame;
-}
-
-DisplayPixels RenderSession::picture(const Background& background, const Tonemap& tonemap, bool alpha) {
-    if (samples_ == 0) throw Error(ErrorKind::internal, "there are no samples yet", "RenderSession::picture");
-    if (!film_) return display_pixels(frame(background, true), tonemap, alpha);
-    resolve();
-    Device& device = film_->device();
-    if (!display_) display_.emplace(device);
-    Behind behind;
-    if (background.kind == Background::Kind::color) {
-        const auto& c = background.color;
-        behind.opaque = true;
-        behind.colour = {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), 0};
-    } else if (background.kind == Background::Kind::environment) {
-        const std::size_t bytes = numbers_ * sizeof(shared::float4);
-        if (behind_.bytes() != bytes) behind_ = device.buffer(bytes, "background");
-        if (!std::exchange(behind_set_, true)) see_environment(*workers_[scheduler_.left().front()], 0, numbers_, behind_);
-        behind.picture = &behind_;
-    }
-    return display_->show(*film_, behind, tonemap, alpha);
-}
-
-/// The environment behind the pixels [count], float4 each.
-void RenderSession::see_environment(Worker& w, std::uint32_t first, std::uint32_t count, Buffer& out) {
-    Kernel kernel = w.device.kernel("render/background", {{"CLVR_WIDTH", "1"}});
-    w.device.launch(kernel, {count}, kernel.group(64), {}, w.lights->arguments(), first, count, out);
-}
-
-void RenderSession::lay_background(Frame& frame, const Background& background) {
-    if (background.kind == Background::Kind::transparent) return;
-    std::vector<shared::float4> under(numbers_);
-    if (background.kind == Background::Kind::color) {
-        const auto& c = background.color;
-        std::fill(under.begin(), under.end(),
-                  shared::float4{static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]), 0});
-    } else {
-        scheduler_.run("background", numbers_, 1, march_chunk_sizes(), [&](std::size_t k, std::uint32_t first, std::uint32_t count) {
-            Worker& w = *workers_[k];
-            Buffer out = w.device.buffer(count * sizeof(shared::float4), "background");
-            see_environment(w, first, count, out);
-            w.device.read(out, &under[first], count * sizeof(shared::float4));
-        });
-    }
-    std::array<std::vector<float>*, 3> below{&frame.channel("background.R"), &frame.channel("background.G"),
-                                             &frame.channel("background.B")};
-    for_pixels(frame.width, frame.height, [&](std::uint32_t i, std::size_t at) {
-        (*below[0])[at] = under[i].x, (*below[1])[at] = under[i].y, (*below[2])[at] = under[i].z;
-    });
-    for (const std::string picture : {"", "noisy."}) {
-        if (!frame.has(picture + "A")) continue;
-        const std::vector<float>& alpha = frame.at(picture + "A");
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::vector<float>& color = frame.channel(picture + "RGB"[k]);
-            for (std::size_t i = 0; i < color.size(); ++i) color[i] += (1 - alpha[i]) * (*below[k])[i];
-        }
-    }
 }
 
 void take(RenderSession& session, const Scene& scene, const RenderControl& control) {

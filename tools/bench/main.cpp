@@ -115,11 +115,9 @@ void bench_live(const Options& o) {
         Scene scene = benchmark_scene(640, 640, 1);
         if (!o.volume.empty()) scene.transfer.reset();
         const PreparedVolume volume(o.volume.empty() ? benchmark_volume(o.tiny ? 64 : 256) : open_volume(o.volume, {}, devices));
-        fmt::print("{}, {}:\n{}", f.name, o.volume.empty() ? "256^3 u8" : o.volume,
-                   live_table(measure_live(devices.front(), volume, scene, model,
-                                           o.tiny    ? 0.1
-                                           : o.quick ? 2
-                                                     : 6)));
+        const double seconds = o.tiny ? 0.01 : o.quick ? 2 : 6;
+        const std::vector<LiveRow> rows = measure_live(devices.front(), volume, scene, model, seconds, o.tiny ? 8 : 1);
+        fmt::print("{}, {}:\n{}", f.name, o.volume.empty() ? "a computed volume" : o.volume, live_table(rows));
         std::fflush(stdout);
     }
 }

@@ -285,10 +285,6 @@ Frame read_all(const std::string& path, bool values) {
     return frame;
 }
 
-} // namespace
-
-namespace {
-
 Frame read_named(const std::string& path, bool values) {
     will_read(path);
     check_readable(path);
