@@ -70,6 +70,10 @@ bool pocl_aborts_on_broken_binaries(const std::string& platform) {
     return platform.find("Portable Computing Language") != std::string::npos;
 }
 
+bool pocl_reads_a_header_of_all_builtins(const std::string& platform, const std::string& driver_version) {
+    return platform.find("Portable Computing Language") != std::string::npos && driver_version.rfind("3.1", 0) == 0;
+}
+
 double milliseconds_though_stamps_run_backwards(std::uint64_t start_ns, std::uint64_t end_ns) {
     return end_ns > start_ns ? static_cast<double>(end_ns - start_ns) * 1e-6 : 0;
 }

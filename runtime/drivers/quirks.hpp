@@ -22,6 +22,10 @@ std::string pocl_cache_problem();
 /// binaries; fetching them compiles everything once more. https://github.com/inducer/pyopencl/issues/731
 bool pocl_aborts_on_broken_binaries(const std::string& platform);
 
+/// PoCL 3.1 puts a header that declares all 18,000 overloads of the built-in functions before each program, and reads it again whenever a
+/// program is loaded: 30 ms each. clvr leaves it out, by its guard, and declares what its kernels call (kernels/lib/builtins.clh).
+bool pocl_reads_a_header_of_all_builtins(const std::string& platform, const std::string& driver_version);
+
 /// Oclgrind claims to be CPU, GPU and accelerator at once, and interprets a thousand times slower than any of them.
 /// https://github.com/jrprice/Oclgrind/pull/99
 bool oclgrind_claims_every_device_type(const std::string& platform);

@@ -138,7 +138,7 @@ public:
     /// Built on first use with `defines`, then kept in process and on disk (there by the driver where it does so).
     /// A build failure throws Error{device} whose text holds the compiler's log with file and line.
     Kernel kernel(const std::string& stage, const Defines& defines = {});
-    /// Has the program of an entry point built on a thread of its own, for kernel() to find. On PoCL each takes about 35 ms of one core
+    /// Has the program of an entry point built on a thread of its own, for kernel() to find. On PoCL each takes about 10 ms of one core
     /// even when it is in the driver's cache.
     void prepare(const std::string& stage, const Defines& defines = {});
 

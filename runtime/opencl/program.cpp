@@ -49,6 +49,7 @@ std::string build_options(const DeviceFacts& facts, const std::map<std::string, 
     std::string options = "-cl-std=CL1.2 -w";
     if (facts.claims_correct_divide_sqrt) options += " -cl-fp32-correctly-rounded-divide-sqrt";
     if (quirks::oclgrind_knows_no_noalias_scopes(facts.platform)) options += " -fno-inline";
+    if (quirks::pocl_reads_a_header_of_all_builtins(facts.platform, facts.driver_version)) options += " -D_OPENCL_H_"; // its guard
     for (const auto& [name, value] : defines) {
         if (name.empty() || (name + value).find_first_of(" \t\n\"'\\") != std::string::npos)
             throw Error(ErrorKind::internal, fmt::format("the definition {}={} cannot be passed to an OpenCL compiler", name, value));
@@ -59,7 +60,9 @@ std::string build_options(const DeviceFacts& facts, const std::map<std::string, 
 
 cl::Program build_program(const cl::Context& context, const DeviceFacts& facts, const std::string& path,
                           const std::map<std::string, std::string>& defines) {
-    const Source source = expand_source(path, read_kernel_file);
+    const Source source =
+        expand_source(path, read_kernel_file,
+                      quirks::pocl_reads_a_header_of_all_builtins(facts.platform, facts.driver_version) ? "lib/builtins.clh" : "");
     const std::string options = build_options(facts, defines);
     return cl_check(fmt::format("building {} for {}", path, facts.name), [&] {
         if (quirks::pocl_aborts_on_broken_binaries(facts.platform)) return from_source(context, facts, path, source, options);

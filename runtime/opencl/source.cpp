@@ -47,12 +47,12 @@ class Expander {
 public:
     explicit Expander(const ReadKernelFile& read) : read_(read) {}
 
-    Source expand(const std::string& path) {
+    void add(const std::string& path) {
         const auto text = read_(path);
         if (!text) throw Error(ErrorKind::input, "there is no such kernel file", path);
         file(path, *text, false);
-        return std::move(source_);
     }
+    Source result() { return std::move(source_); }
 
 private:
     enum class Seen { conditionally, always, open };
@@ -136,7 +136,12 @@ void require_folder(const std::string& folder, const char* where) {
 
 } // namespace
 
-Source expand_source(const std::string& path, const ReadKernelFile& read) { return Expander(read).expand(path); }
+Source expand_source(const std::string& path, const ReadKernelFile& read, const std::string& prelude) {
+    Expander expander(read);
+    if (!prelude.empty()) expander.add(prelude);
+    expander.add(path);
+    return expander.result();
+}
 
 std::string located_log(const std::string& log, const Source& source, bool counts_whole_text) {
     if (!counts_whole_text) return log;

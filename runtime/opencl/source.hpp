@@ -22,8 +22,8 @@ using ReadKernelFile = std::function<std::optional<std::string>(const std::strin
 
 /// Expands `#include "x"` (x beside the including file, else under the root), each file once; a file that so far was included only inside
 /// #if is included again, behind a guard. Includes in <> are left to the compiler, and so are those inside #if that name no file. Throws
-/// Error{input} naming the including file and line when a file is missing.
-Source expand_source(const std::string& path, const ReadKernelFile& read);
+/// Error{input} naming the including file and line when a file is missing. `prelude`: a file whose text comes first.
+Source expand_source(const std::string& path, const ReadKernelFile& read, const std::string& prelude = {});
 
 /// A compiler's log with positions in our files. `#line` does that already; where a driver ignores it, "anything:LINE:" with a line of the
 /// expanded text becomes "file:line:".

@@ -15,11 +15,14 @@ constexpr const char *pocl = "Portable Computing Language", *oclgrind = "Oclgrin
 TEST(Quirks, GoByThePlatform) {
     for (const char* other : {"NVIDIA CUDA", "rusticl", "Intel(R) OpenCL", ""}) {
         EXPECT_FALSE(quirks::pocl_aborts_on_broken_binaries(other));
+        EXPECT_FALSE(quirks::pocl_reads_a_header_of_all_builtins(other, "3.1"));
         EXPECT_FALSE(quirks::oclgrind_claims_every_device_type(other));
         EXPECT_FALSE(quirks::oclgrind_ignores_line_directives(other));
         EXPECT_FALSE(quirks::oclgrind_knows_no_noalias_scopes(other));
     }
     EXPECT_TRUE(quirks::pocl_aborts_on_broken_binaries(pocl));
+    EXPECT_TRUE(quirks::pocl_reads_a_header_of_all_builtins(pocl, "3.1+debian"));
+    EXPECT_FALSE(quirks::pocl_reads_a_header_of_all_builtins(pocl, "6.0+debian"));
     EXPECT_TRUE(quirks::oclgrind_claims_every_device_type(oclgrind));
     EXPECT_TRUE(quirks::oclgrind_ignores_line_directives(oclgrind));
     EXPECT_TRUE(quirks::oclgrind_knows_no_noalias_scopes(oclgrind));

@@ -61,6 +61,15 @@ TEST(Source, IncludesBesideTheFileAndUnderTheRoot) {
     EXPECT_LT(text.find("\nfar\n"), text.find("\nmain\n"));
 }
 
+TEST(Source, APreludeComesFirst) {
+    const Files files{{"m.cl", "#include \"x.clh\"\nmain\n"}, {"x.clh", "other\n"}, {"p.clh", "first\n"}};
+    const Source source = expand_source("m.cl", reader(files), "p.clh");
+    EXPECT_LT(source.text.find("\nfirst\n"), source.text.find("\nother\n")) << source.text;
+    ASSERT_EQ(lines_of(source.text).size(), source.origins.size());
+    EXPECT_EQ(source.origins.back().file, "m.cl");
+    EXPECT_EQ(source.origins.back().line, 2);
+}
+
 TEST(Source, LineDirectivesAndLineTableAgree) {
     const Files files{{"m.cl", "one\n#include \"x.clh\"\nthree\n#include \"x.clh\"\nfive\n"},
                       {"x.clh", "#pragma once\nX2\n#include \"y.clh\"\nX4\n"},
