@@ -12,14 +12,14 @@ namespace clvr::selftest {
 /// pixel_hash of each golden scene (golden_scene), the denoised one's of golden_denoised, the rendered and denoised one's of
 /// golden_picture.
 inline const std::map<std::string, std::string> golden_hashes{
-    {"automatic", "434c1b9db066875ce33946bad7084efc3a846d699a0c2c95274274d86b1d0ca8"},
-    {"dvr", "209d48d45362339e7e40d8a8870c7a7860977e1be0443dd3d35f990c2c9d440a"},
-    {"gradient", "b7600bbc7b9a87358f13b092846a4b8c25624389a89178594e2fc4bad1ad3c5f"},
-    {"mip", "d03b29a4c5588dc93a447e74d6b786996c6c0f0a67676b7d1c56293c7a6c1e61"},
-    {"phase", "058b1810a58a8293e829c4dd945164c674cf4f2e95fe57c110422890b2581fab"},
+    {"automatic", "4f03f37bb059be208ca50d9e527d364d09a6da76374192c82d7439769cc5414c"},
+    {"dvr", "c9826472ad12078dd257a7efc6e6dccf4e914f1b8bee7b4f48273ec36dfa573b"},
+    {"gradient", "7b191932e2d482fde6bdb0f2179f929abc5eaa4c7407648abd046aa260348ab0"},
+    {"mip", "9bcdade87d2f47653dd0f64cb968c24500a67109609089504ad09896e01cf257"},
+    {"phase", "7154431002c1afea4d385351a75823ddbe5ca3eb1d15a918573df6fcdad1c5a8"},
 };
 inline const std::string golden_denoised_hash = "2f842ced212505c430e78eb0b9e46d27e9a9d89534f993d17779341a72dc449b";
-inline const std::string golden_picture_hash = "c6cec2d3a39c9b9f2f9745d3ce1a4604a50a4215094b902d9e1253a905a91ca1";
+inline const std::string golden_picture_hash = "325e089a6a4a05d70d098d0d2bf79493d0dc13adfc5ea3b393fad92d2adb7d4d";
 
 /// SHA-256 of the bits that the functions of kernels/lib/math.clh give for function_arguments, in the order of math_values.cl.
 inline const std::array<std::pair<const char*, const char*>, 5> golden_functions{{

@@ -62,7 +62,7 @@ Features march_features(const MarchScene& s, int x, int y) {
         const Interval way = inside(s, origin, dir_index, eye, dir);
         double transmitted = 1, half = 1;
         for (int k = 0; transmitted >= 1e-4; ++k) {
-            const double t = way.low + (k + 0.5) * s.step;
+            const double t = way.low + (k + (ray + 0.5) / s.rays) * s.step;
             if (t >= way.high) break;
             const Double3 p = origin + dir_index * t;
             const Classified c = classify(*s.table, interpolate(*s.voxels, p));

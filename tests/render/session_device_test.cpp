@@ -162,9 +162,10 @@ TEST(Mip, IsTheGreatestVisibleValue) {
     look_along_y(s, {19.5, 11.5, 19.5}, 24);
     const Frame f = render(v, s);
     for (int x = 0; x < 24; ++x) {
-        // The lattice's nearest sample lies a quarter voxel from the bright slice, between it and its dark neighbours.
+        // Of the pixel's four lattices the first and the last have samples a sixteenth of a voxel from the bright slice, between it and its
+        // dark neighbours. The last one's ray sees the greater value.
         const double value = 100 + 3 * (19.5 + x + 0.5 - 12);
-        EXPECT_NEAR(f.at("R")[10 * 24 + x], (0.75 * value + 0.25 * 11.5 - 50) / 200, 0.01);
+        EXPECT_NEAR(f.at("R")[10 * 24 + x], (15 * (value + 3 * 0.375) + 12 - 16 * 50) / 16 / 200, 0.01);
         EXPECT_EQ(f.at("A")[10 * 24 + x], 1);
     }
 }
