@@ -1,5 +1,6 @@
 // The plain settings of a scene as the server lists them: ranges, defaults and help. Sliders also need a comfortable span where a setting
 // has no bounds, or bounds that nobody uses.
+import { slider } from "./controls.js";
 import { clamp } from "./vectors.js";
 
 const spans = {
@@ -63,4 +64,12 @@ export function get(scene, key) {
 export function set(scene, key, value) {
     const names = key.split("."), last = names.pop();
     names.reduce((from, name) => (from[name] ??= {}), scene)[last] = value;
+}
+
+/// A slider of a plain setting of the scene: {root, update(scene)}.
+export function setting_slider(app, label, key, { logarithmic = false, unit = "", most = Infinity } = {}) {
+    const { low, high, step } = app.settings.span(key);
+    const options = { low, high: Math.min(high, most), step, logarithmic, unit, help: app.settings.help(key), allowed: (v) => app.settings.allowed(key, v) };
+    const made = slider(label, options, (value) => app.state.edit(key, (scene) => set(scene, key, value)));
+    return { root: made.root, update: (scene) => made.set(get(scene, key) ?? app.settings.default_of(key)) };
 }
