@@ -102,7 +102,7 @@ export class App {
 
     set_trackball(on) {
         this.trackball = on;
-        this.messages.show(on ? "Free trackball: K levels the horizon again." : "The horizon stays level.", { level: "info" });
+        this.messages.show(on ? "Free trackball: K levels the horizon again." : "The horizon stays level.", { level: "info", key: "trackball" });
         if (!on) this.move_camera(null, (camera) => orbit(camera, 0, 0, false));
         this.changed();
     }

@@ -4,6 +4,7 @@ import { box_corners, with_side } from "./clip.js";
 import { at_shares, centre, diagonal, edges, plane_in_box } from "./geometry.js";
 import { add, along, inner, norm, scale, subtract, unit } from "./vectors.js";
 
+const of_box = "#ffd166", of_plane = "#7fd1ff";
 const reach = { mouse: 11, pen: 14, touch: 26 }; // [CSS pixels]
 
 /// The dots: {x, y, kind: "side"|"offset"|"tilt", side}, in CSS pixels of a picture of width x height.
@@ -83,29 +84,29 @@ function tilt_drag(app, height) {
 export function draw_clip(context, app, width, height) {
     if (!app.clip.shows_handles) return;
     const { scene } = app.state, project = projector(app.camera, width, height);
-    const path = (points, closed) => {
+    const path = (points, color, closed) => {
         const ends = points.map(project);
         if (ends.some((p) => !p)) return;
-        for (const [line, color] of [[3, "rgb(0 0 0 / 0.5)"], [1.25, "rgb(255 255 255 / 0.85)"]]) {
+        for (const [line, style] of [[3.5, "rgb(0 0 0 / 0.5)"], [1.5, color]]) {
             context.beginPath();
             ends.forEach((p, i) => (i ? context.lineTo(p.x, p.y) : context.moveTo(p.x, p.y)));
             if (closed) context.closePath();
             context.lineWidth = line;
-            context.strokeStyle = color;
+            context.strokeStyle = style;
             context.stroke();
         }
     };
     const box = box_corners(app.volume, scene);
-    if (scene.clip_box) for (const [i, j] of edges) path([box[i], box[j]]);
+    if (scene.clip_box) for (const [i, j] of edges) path([box[i], box[j]], of_box);
     if (scene.clip_plane) {
-        path(plane_in_box(box, scene.clip_plane.normal, scene.clip_plane.offset), true);
+        path(plane_in_box(box, scene.clip_plane.normal, scene.clip_plane.offset), of_plane, true);
         const { point, tip } = plane_points(app);
-        path([point, tip]);
+        path([point, tip], of_plane);
     }
     for (const dot of clip_dots(app, width, height)) {
         context.beginPath();
         context.arc(dot.x, dot.y, dot.kind === "tilt" ? 5 : 7, 0, 2 * Math.PI);
-        context.fillStyle = dot.kind === "side" ? "#ffd166" : "#7fd1ff";
+        context.fillStyle = dot.kind === "side" ? of_box : of_plane;
         context.fill();
         context.lineWidth = 1.5;
         context.strokeStyle = "rgb(0 0 0 / 0.8)";

@@ -78,11 +78,17 @@ export class Connection {
         if (this.is_open) this.#socket.send(JSON.stringify(message));
     }
 
+    /// Gives the message a new id, by which a refusal names it.
+    send_with_id(message) {
+        const id = this.#next_id++;
+        this.send({ ...message, id });
+        return id;
+    }
+
     /// A message that the server answers by its id: a promise of the answer.
     request(message) {
         if (!this.is_open) return Promise.reject(new Error("There is no connection to clvr at the moment."));
-        const id = this.#next_id++;
-        this.send({ ...message, id });
+        const id = this.send_with_id(message);
         return new Promise((resolve, reject) => this.#waiting.set(id, { resolve, reject }));
     }
 

@@ -108,8 +108,8 @@ export function slider(label, options, changed) {
     range.addEventListener("input", () => changed(allowed(from(range.valueAsNumber))));
     when_typed(typed, (is_typing) => (typing = is_typing), (value) => changed(allowed(value)));
     const root = element("div", { class: "slider", title: options.help ?? "" },
-        element("label", { for: id }, label),
-        range, typed, element("span", { class: "unit" }, options.unit ?? ""),
+        element("label", { for: id }, label, options.unit ? element("span", { class: "unit" }, ` ${options.unit}`) : null),
+        range, typed,
         help ? element("span", { id: help, class: "hidden" }, options.help) : null);
     return { root, set: show };
 }

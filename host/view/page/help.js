@@ -42,7 +42,10 @@ export class Help {
             element("dl", {}, ...lines.flatMap(([keys, words]) => [element("dt", {}, keys), element("dd", {}, words)]))));
         dialog.append(element("header", {}, element("h2", {}, "Help"), button("Close", () => dialog.close())), element("div", { class: "sheet" }, ...parts));
         dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
-        dialog.addEventListener("keydown", (event) => event.key.toLowerCase() === "h" && dialog.close());
+        dialog.addEventListener("keydown", (event) => {
+            event.stopPropagation(); // the page's own keys rest
+            if (event.key.toLowerCase() === "h") dialog.close();
+        });
     }
 
     toggle() {

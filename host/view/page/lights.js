@@ -69,7 +69,7 @@ export class LightPanel {
         if (!file) return;
         try {
             if (file.size > largest_upload) throw new Error(`${file.name} is larger than 64 MiB.`);
-            this.#app.messages.show(`Sending ${file.name} …`, { level: "info", key: "upload" });
+            this.#app.messages.show(`Sending ${file.name} …`, { level: "info", key: "upload", stays: true });
             const answer = await this.#app.connection.fetch(`./environment?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
             const { environment, name } = await answer.json();
             this.name.textContent = name;

@@ -114,11 +114,18 @@ function take_scene({ scene, view, generation }) {
     const camera = { ...scene.camera, eye: view.eye, target: view.target, up: view.up, fov: view.fov ?? scene.camera.fov };
     if (camera.orthographic) camera.height = view.height;
     const aspect = scene.width / scene.height;
-    if (framed_by_server || !app.home) app.home = { camera, aspect };
+    keep_home(framed_by_server, { name: app.volume.name, camera, aspect });
     state.adopt({ ...scene, camera }, generation);
     if (app.can_control) state.amend((own) => (own.camera = fitted(own.camera, aspect, app.aspect)));
 }
 app.take_scene = take_scene;
+
+/// Where Reset leads: the server's own framing, also after a reload of the page, or else what came first.
+function keep_home(framed_by_server, home) {
+    const stored = JSON.parse(sessionStorage.getItem("clvr.home") ?? "null");
+    if (framed_by_server) sessionStorage.setItem("clvr.home", JSON.stringify(home));
+    if (framed_by_server || !app.home) app.home = !framed_by_server && stored?.name === home.name ? stored : home;
+}
 
 connection.on("hello", (hello) => {
     const had_control = app.can_control, keeps_own = unsent && had_control;
@@ -156,8 +163,9 @@ connection.on("volume", (message) => {
 
 connection.on("scene", take_scene);
 
-connection.on("refused", ({ generation, message }) => {
+connection.on("refused", ({ generation, id, message }) => {
     messages.show(message);
+    if (id !== undefined) save_panel.refused(id);
     if (generation !== undefined && generation >= state.generation && drawn_scene) state.fall_back(drawn_scene);
 });
 
@@ -171,7 +179,7 @@ connection.on("role", ({ role }) => {
 
 function show_role() {
     if (app.can_control) messages.clear("role");
-    else messages.show("You watch; somebody else controls the view.", { level: "info", key: "role", action: { text: "Take control", run: () => connection.send({ type: "take_control" }) } });
+    else messages.show("You watch; somebody else controls the view.", { level: "info", key: "role", stays: true, action: { text: "Take control", run: () => connection.send({ type: "take_control" }) } });
     if (app.can_control) send_scene(); // at the size of this window
     app.changed();
 }
@@ -186,7 +194,7 @@ connection.on("open", () => (last_words = ""));
 connection.on("lost", ({ message, retry_ms, ended }) => {
     const why = last_words || message || (ended ? "clvr view has ended." : "The connection to clvr was lost.");
     const then = retry_ms === null ? "" : ` Trying again in ${Math.max(1, Math.round(retry_ms / 1000))} s.`;
-    messages.show(why + then, { level: ended ? "info" : "error", key: "connection", action: { text: "Connect now", run: () => connection.open() } });
+    messages.show(why + then, { level: ended ? "info" : "error", key: "connection", stays: true, action: { text: "Connect now", run: () => connection.open() } });
 });
 
 // ---- the window ----
@@ -194,14 +202,18 @@ connection.on("lost", ({ message, retry_ms, ended }) => {
 let window_pixels = [640, 640];
 app.fit_window = () => {
     const [width, height] = window_pixels, side = app.hello?.limits?.side ?? 4096;
-    const share = Math.min(app.detail, side / Math.max(width, height));
+    const share = Math.min(app.detail, side / Math.max(width, height)), before = app.aspect;
     state.resize(Math.max(1, Math.round(width * share)), Math.max(1, Math.round(height * share)));
+    if (app.can_control && state.scene && app.aspect !== before) state.amend((scene) => (scene.camera = fitted(scene.camera, before, app.aspect)));
 };
 
 function resized([entry]) {
     const exact = entry.devicePixelContentBoxSize?.[0], css = entry.contentBoxSize[0];
-    const size = exact ?? { inlineSize: css.inlineSize * devicePixelRatio, blockSize: css.blockSize * devicePixelRatio };
-    window_pixels = [Math.max(1, Math.round(size.inlineSize)), Math.max(1, Math.round(size.blockSize))];
+    const pixels = (length, of_device) => {
+        const about = length * devicePixelRatio; // emulated ratios are not in what the device says
+        return Math.max(1, Math.round(Math.abs(of_device - about) < 2 ? of_device : about));
+    };
+    window_pixels = [pixels(css.inlineSize, exact?.inlineSize), pixels(css.blockSize, exact?.blockSize)];
     picture.ratio = window_pixels[0] / Math.max(1, css.inlineSize);
     picture.resize(...window_pixels);
     [surface.width, surface.height] = window_pixels;
@@ -216,6 +228,7 @@ try {
     observer.observe(surface); // a browser that does not know the exact size
 }
 
+if (matchMedia("(pointer: coarse)").matches) by_id("hint").textContent = "Drag to turn, pinch to zoom, ? for help";
 listen_to_pointer(app, surface);
 listen_to_touch(app, surface);
 listen_to_keys(app, surface);
@@ -223,4 +236,4 @@ by_id("sheet-toggle").addEventListener("click", () => app.toggle_panel());
 
 app.changed();
 if (token) connection.open();
-else messages.show("This page needs the whole address that clvr view printed, with the token behind the #.", { key: "connection", action: { text: "Reload", run: () => location.reload() } });
+else messages.show("This page needs the whole address that clvr view printed, with the token behind the #.", { key: "connection", stays: true, action: { text: "Reload", run: () => location.reload() } });

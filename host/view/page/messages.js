@@ -1,7 +1,7 @@
 // The bar of messages: what the server says, and how the connection is, in words.
 import { button, element } from "./controls.js";
 
-const notice_ms = 12000;
+const notice_ms = { info: 4000, warning: 15000, error: 15000 };
 
 export class Messages {
     #root;
@@ -11,15 +11,15 @@ export class Messages {
         this.#root = root;
     }
 
-    /// level: "info", "warning" or "error". With a key, the message stays until clear(key) and replaces the former of that key.
-    show(text, { level = "error", key = null, action = null } = {}) {
-        this.clear(key ?? text);
+    /// level: "info", "warning" or "error". With a key, the message replaces the former of that key; when it `stays`, until clear(key).
+    show(text, { level = "error", key = text, stays = false, action = null } = {}) {
+        this.clear(key);
         const message = element("div", { class: `message ${level}`, role: level === "error" ? "alert" : "status" }, element("span", {}, text));
         if (action) message.append(button(action.text, action.run));
-        else message.append(button("×", () => this.clear(key ?? text), { class: "close", "aria-label": "Close this message" }));
+        else message.append(button("×", () => this.clear(key), { class: "close", "aria-label": "Close this message" }));
         this.#root.append(message);
-        this.#shown.set(key ?? text, message);
-        if (!key) setTimeout(() => this.#shown.get(text) === message && this.clear(text), notice_ms);
+        this.#shown.set(key, message);
+        if (!stays) setTimeout(() => this.#shown.get(key) === message && this.clear(key), notice_ms[level]);
     }
 
     clear(key) {

@@ -10,7 +10,7 @@ const words = { waiting: "waiting", running: "rendering", done: "ready", failed:
 export class SavePanel {
     #app;
     #rows = new Map(); // job -> {root, words, bar, actions}
-    #expected = []; // what this page asked for and the server has not named yet: {what, overlays}
+    #expected = []; // what this page asked for and the server has not named yet: {what, overlays, id}
     #own = new Map(); // job -> overlays to draw, or null
     #chosen = { what: "still", width: null, height: null, samples: null, views: 72, format: "png", overlays: false };
 
@@ -33,7 +33,7 @@ export class SavePanel {
         this.go = button("Save picture", () => this.save(chosen.what), { class: "primary" });
         this.load_button = button("Load scene…", () => this.file.click());
         this.root = section("Save", false, this.what.root, row(this.width.root, this.height.root), row(this.samples.root, this.views.root), this.format.root, this.overlays.root,
-            row(this.go, button("As the window", () => this.#as_window(), { title: "Size and samples of the picture on screen" })), this.jobs,
+            row(this.go, button("Use window size", () => this.#as_window(), { title: "Size and samples of the picture on screen" })), this.jobs,
             row(button("Save scene", () => this.save("scene"), { title: "Everything that makes this picture, for clvr render" }), this.load_button), this.file);
     }
 
@@ -72,12 +72,13 @@ export class SavePanel {
         if (picture) Object.assign(asked, { format: what === "still" ? chosen.format : "png", width, height, samples });
         if (what === "turntable") asked.views = views;
         const overlays = what === "still" && chosen.overlays && chosen.format !== "exr" ? { ...app.overlay_facts(), status: `${samples} samples` } : null;
-        const expected = { what, overlays };
-        this.#expected.push(expected);
-        app.connection.request(asked).then((answer) => answer.type === "job" && this.job(answer), (error) => {
-            this.#expected = this.#expected.filter((e) => e !== expected);
-            app.messages.show(error.message);
-        });
+        if (!app.connection.is_open) app.messages.show("Nothing can be saved without a connection to clvr.");
+        else this.#expected.push({ what, overlays, id: app.connection.send_with_id(asked) });
+    }
+
+    /// The server does not do what the message of this id asked for.
+    refused(id) {
+        this.#expected = this.#expected.filter((e) => e.id !== id);
     }
 
     /// A job's news from the server. What this page asked for is downloaded when it is ready.
@@ -103,7 +104,7 @@ export class SavePanel {
         const root = element("li", {}, parts.words, parts.bar, parts.actions);
         this.#rows.set(job.job, { root, ...parts, state: expected >= 0 ? null : undefined });
         this.jobs.prepend(root);
-        if (expected >= 0) this.root.open = true;
+        if (expected >= 0 && job.what !== "transfer") this.root.open = true;
     }
 
     async #download(job) {

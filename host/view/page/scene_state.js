@@ -19,7 +19,7 @@ export class SceneState {
     /// Of the picture [device pixels]: not part of what is undone.
     size = { width: 640, height: 640 };
 
-    /// Calls listener(scene, by) after each change; `by` is "edit" (also undo and redo), "size" or "server".
+    /// Calls listener(scene, by) after each change; `by` is "edit" (also undo and redo), "amend", "size" or "server".
     subscribe(listener) {
         this.#listeners.add(listener);
     }
@@ -48,7 +48,7 @@ export class SceneState {
         if (!this.scene) return;
         const next = structuredClone(this.scene);
         change(next);
-        this.#replace(next);
+        this.#replace(next, "amend");
     }
 
     /// While a pointer is down, all edits of one key are one step.
@@ -114,10 +114,10 @@ export class SceneState {
         this.#replace(from.pop());
     }
 
-    #replace(scene) {
+    #replace(scene, by = "edit") {
         this.scene = scene;
         ++this.generation;
-        this.#tell("edit");
+        this.#tell(by);
     }
 
     #tell(by) {

@@ -37,12 +37,9 @@ export const shifted = (transfer, by) => with_points(transfer, transfer.points.m
 export const stretched = (transfer, factor, around) =>
     with_points(transfer, transfer.points.map((p) => ({ ...p, value: around + (p.value - around) * factor })));
 
-/// All opacities times a factor; the greatest then is at most 1, so that their relations stay.
-export function with_opacities_times(transfer, factor) {
-    const most = Math.max(...transfer.points.map((p) => p.opacity));
-    const by = most > 0 ? Math.min(factor, 1 / most) : 1;
-    return with_points(transfer, transfer.points.map((p) => ({ ...p, opacity: p.opacity * by })));
-}
+/// All opacities times a factor, at most 1.
+export const with_opacities_times = (transfer, factor) =>
+    with_points(transfer, transfer.points.map((p) => ({ ...p, opacity: Math.min(1, p.opacity * factor) })));
 
 /// A new knot; gives {transfer, index}.
 export function with_knot(transfer, value, opacity) {

@@ -46,7 +46,7 @@ export class TransferPanel {
         const for_this = (p) => (volume.unit === "HU") === (p.transfer.domain === "physical");
         const order = (p) => (fits(p) ? (for_this(p) ? 0 : 1) : 2);
         const sorted = presets.map((p) => ({ ...p, fits: fits(p) })).sort((a, b) => order(a) - order(b));
-        const all = [{ name: "Automatic", description: "From the histogram: background vanishes, structure shows", transfer: null, fits: true }, ...sorted];
+        const all = [{ name: "Automatic", description: "Background vanishes, structure shows", transfer: null, fits: true }, ...sorted];
         this.#buttons = all.map((preset) => ({ preset, root: this.#preset_button(preset, preset.transfer ?? automatic) }));
         this.#presets.replaceChildren(...this.#buttons.map((b) => b.root));
     }
@@ -54,8 +54,9 @@ export class TransferPanel {
     #preset_button(preset, transfer) {
         const swatch = element("canvas", { class: "swatch", width: 44, height: 24, "aria-hidden": "true" });
         draw_swatch(swatch, physical(transfer, this.#app.volume.range), this.#app.volume.range);
-        const words = preset.fits ? preset.description : `${preset.description} (nothing of this volume lies in its values)`;
-        return element("button", { type: "button", class: preset.fits ? "preset" : "preset misfit", "aria-pressed": "false", title: words, onclick: () => this.#choose(preset) },
+        const full = preset.fits ? preset.description : `${preset.description} (nothing of this volume lies in its values)`;
+        const words = preset.description.replace(/^[^:]*: /, ""); // "CT in Hounsfield units: bone alone, ivory"
+        return element("button", { type: "button", class: preset.fits ? "preset" : "preset misfit", "aria-pressed": "false", title: full, onclick: () => this.#choose(preset) },
             swatch, element("span", { class: "preset-name" }, preset.name), element("span", { class: "preset-words" }, words));
     }
 
@@ -84,7 +85,7 @@ export class TransferPanel {
 
     #file_row() {
         const file = element("input", { type: "file", accept: ".json,application/json", class: "hidden", tabindex: "-1", "aria-label": "Transfer function file", onchange: () => this.#load(file) });
-        return element("div", {}, row(button("Load…", () => file.click(), { title: "A JSON file of clvr or of ParaView" }), button("Save", () => this.#app.save("transfer")),
+        return element("div", {}, row(button("Load file…", () => file.click(), { title: "A JSON file of clvr or of ParaView" }), button("Save file", () => this.#app.save("transfer")),
             button("Fit axis", () => this.#editor.fit(), { title: "Shows the whole range of values (double click)" })), file);
     }
 

@@ -101,7 +101,7 @@ function draw_axis(context, layout, { volume, colors }) {
     context.textBaseline = "top";
     context.textAlign = "center";
     const unit_width = volume.unit ? context.measureText(volume.unit).width + 8 : 0;
-    for (const value of ticks(layout.view[0], layout.view[1], Math.max(2, layout.width / 70))) {
+    for (const value of ticks(layout.view[0], layout.view[1], Math.max(2, layout.width / 60))) {
         const x = layout.x(value), text = readable(value), half = context.measureText(text).width / 2;
         context.fillRect(Math.round(x), layout.strip + 10, 1, 3);
         if (x + half < layout.width - unit_width && x - half > 0) context.fillText(text, x, layout.strip + 15);
