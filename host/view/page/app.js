@@ -1,7 +1,7 @@
 // What the parts of the page share: the scene and its camera, the server's facts, the picture's place on the stage, and the actions that
 // several of them offer.
-import { angles, fitted, look_from, orbit, point_at_target, with_projection, zoom_around } from "./camera.js";
-import { diagonal } from "./geometry.js";
+import { angles, fitted, framed, look_from, orbit, point_at_target, with_projection, zoom_around } from "./camera.js";
+import { corners, diagonal, whole_box } from "./geometry.js";
 import { add, clamp, subtract } from "./vectors.js";
 
 const remembered = (key, otherwise) => JSON.parse(localStorage.getItem(`clvr.${key}`) ?? JSON.stringify(otherwise));
@@ -15,7 +15,7 @@ export class App {
     trackball = false;
     tool = "turn";
     status = "";
-    home = null; // {camera, aspect}: the view that the server framed
+    home = null; // {camera, aspect}: the view that the server framed, or null
     overlays = remembered("overlays", { scale: true, axes: true, colors: true, samples: true });
     detail = remembered("detail", 1);
     panel_open = remembered("panel", true);
@@ -92,8 +92,10 @@ export class App {
         }
     }
 
+    /// The server's framing of what is visible, else all of the volume.
     reset_view() {
-        if (this.home) this.move_camera(null, () => fitted(this.home.camera, this.home.aspect, this.aspect));
+        const { home, aspect, volume } = this;
+        this.move_camera(null, (camera) => (home ? fitted(home.camera, home.aspect, aspect) : framed(camera, corners(volume, whole_box), aspect, 30, 12)));
     }
 
     set_orthographic(on) {
@@ -144,7 +146,8 @@ export class App {
         return { camera: this.camera, scene: this.state.scene, volume: this.volume, automatic: this.automatic, status: this.status, shown: this.overlays };
     }
 
-    async load_scene(text) {
-        this.take_scene(await this.connection.request({ type: "scene_text", text }));
+    /// The server answers all with the scene, or refuses.
+    load_scene(text) {
+        this.connection.send_with_id({ type: "scene_text", text });
     }
 }

@@ -100,6 +100,18 @@ export function with_projection(camera, orthographic, clear) {
     return { ...camera, orthographic, height: orthographic ? height : 0, eye: along(camera.target, back, away) };
 }
 
+/// Looks from a direction [degrees] with all points in the picture, in the middle of what they cover.
+export function framed(camera, points, aspect, azimuth, elevation) {
+    const margin = 0.94, middle = scale(points.reduce(add), 1 / points.length);
+    const aimed = look_from({ ...camera, orthographic: false, height: 0, eye: add(middle, [1, 0, 0]), target: middle }, azimuth, elevation);
+    const { right, up, forward } = frame(aimed), tan_y = Math.tan((camera.fov / 2) * radian) * margin;
+    const needed = points.map((p) => {
+        const d = subtract(p, middle);
+        return Math.max(Math.abs(inner(d, right)) / (tan_y * aspect), Math.abs(inner(d, up)) / tan_y) - inner(d, forward);
+    });
+    return { ...aimed, zoom: 1, eye: along(middle, forward, -Math.max(...needed)) };
+}
+
 /// Adapts a camera that was framed for one aspect (width over height) to another, so that nothing is cut off at the sides.
 export function fitted(camera, framed_aspect, aspect) {
     const factor = Math.min(1, framed_aspect) / Math.min(1, aspect);

@@ -1,7 +1,7 @@
 // Cutting the volume open: a box along its own axes and a plane anywhere, as sections of the panel.
 import { frame } from "./camera.js";
 import { button, checkbox, element, note, row, section, slider } from "./controls.js";
-import { axis_direction, centre, corners, diagonal, ends_of_axis, whole_box } from "./geometry.js";
+import { axis_direction, centre, corners, diagonal, ends_of_axis, name_of_plane, whole_box } from "./geometry.js";
 import { inner, scale } from "./vectors.js";
 
 const least_gap = 0.01; // between the two ends of an axis, as a share
@@ -28,11 +28,10 @@ export class ClipPanel {
         this.handles = checkbox("Show handles in the picture", () => app.redraw());
         this.handles.set(true);
         this.offset_place = element("div");
+        this.across = element("span", { class: "row" });
         this.plane_row = row(
             button("Facing me", () => this.#edit("clip_plane", this.#towards_viewer()), { title: "Cuts away the half that is nearer to you" }),
-            ...[0, 1, 2].map((axis) => button(["x", "y", "z"][axis], () => this.#edit("clip_plane", plane_through_centre(app.volume, axis_direction(app.volume, axis))),
-                { title: `Across the volume's ${"xyz"[axis]} axis` })),
-            button("Flip", () => this.#flip(), { title: "Shows the other side" }));
+            button("Flip", () => this.#flip(), { title: "Shows the other side" }), this.across);
         this.plane_parts = element("div", {}, this.plane_row, this.offset_place);
         this.root = section("Cut open", false, this.box_on.root, this.sliders, this.plane_on.root, this.plane_parts, this.handles.root,
             note("Drag the dots in the picture. The plane's outer dot tilts it."));
@@ -52,6 +51,8 @@ export class ClipPanel {
                 (percent) => this.#edit("clip_box", with_side(this.#app.state.scene.clip_box ?? whole_box, side, percent / 100), `clip_box.${side}`));
         });
         this.sliders.replaceChildren(...[0, 3, 1, 4, 2, 5].map((side) => this.#box_sliders[side].root));
+        this.across.replaceChildren(...[0, 1, 2].map((axis) => button(name_of_plane(volume, axis), () => this.#edit("clip_plane", plane_through_centre(volume, axis_direction(volume, axis))),
+            { title: "Through the middle of the volume" })));
         const middle = centre(volume), half = diagonal(volume) / 2;
         this.offset = slider("Depth", { low: -half, high: half, step: half / 250, unit: "mm", help: "Distance of the plane from the volume's centre" },
             (mm) => this.#edit("clip_plane", this.#at_depth(mm), "clip_plane.offset"));

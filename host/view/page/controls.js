@@ -91,7 +91,7 @@ export function number_field(label, changed, { unit = "", step = "any", title = 
 }
 
 /// A slider with a field beside it, in which any allowed value may be typed.
-/// options: {low, high, step, allowed(value), unit, help, logarithmic}
+/// options: {low, high, step, allowed(value), unit, help, logarithmic, usual}; a double click brings the usual value back.
 export function slider(label, options, changed) {
     const id = new_id("slider"), help = options.help ? new_id("help") : null;
     const to = options.logarithmic ? Math.log : (x) => x, from = options.logarithmic ? Math.exp : (x) => x;
@@ -106,6 +106,7 @@ export function slider(label, options, changed) {
         range.setAttribute("aria-valuetext", readable(value) + (options.unit ? ` ${options.unit}` : ""));
     };
     range.addEventListener("input", () => changed(allowed(from(range.valueAsNumber))));
+    if (options.usual !== undefined) range.addEventListener("dblclick", () => changed(options.usual));
     when_typed(typed, (is_typing) => (typing = is_typing), (value) => changed(allowed(value)));
     const root = element("div", { class: "slider", title: options.help ?? "" },
         element("label", { for: id }, label, options.unit ? element("span", { class: "unit" }, ` ${options.unit}`) : null),

@@ -33,6 +33,13 @@ export function ends_of_axis(volume, axis) {
     return [low, high];
 }
 
+/// What a plane across an index axis is called.
+export function name_of_plane(volume, axis) {
+    if (!volume.anatomical) return "xyz"[axis];
+    const sizes = axis_direction(volume, axis).map(Math.abs);
+    return ["Sagittal", "Coronal", "Axial"][sizes.indexOf(Math.max(...sizes))];
+}
+
 /// The polygon in which the plane inner(normal, x) = offset cuts a box: its corners in order, or none.
 export function plane_in_box(box_corners, normal, offset) {
     const found = [];

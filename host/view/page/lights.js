@@ -35,7 +35,7 @@ export class LightPanel {
         this.directions = [made("From the side", "light.key_azimuth"), made("Height", "light.key_elevation"), made("Softness", "light.key_angle")];
         this.sliders.replaceChildren(...this.directions.map((s) => s.root));
         const usual = 512 / diagonal(app.volume);
-        this.density = slider("Density", { low: usual / 100, high: usual * 20, logarithmic: true, unit: "1/mm", help: app.settings.help("extinction"), allowed: (v) => app.settings.allowed("extinction", v) },
+        this.density = slider("Density", { usual: 0, low: usual / 100, high: usual * 20, logarithmic: true, unit: "1/mm", help: app.settings.help("extinction"), allowed: (v) => app.settings.allowed("extinction", v) },
             (value) => app.state.edit("extinction", (scene) => (scene.extinction = value)));
         this.usual_density = usual;
         this.phase = made("Scattering", "phase_g");

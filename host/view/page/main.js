@@ -31,7 +31,7 @@ app.help = new Help(by_id("help"));
 app.transfer = new TransferPanel(app);
 app.clip = new ClipPanel(app);
 const save_panel = new SavePanel(app);
-const panels = [app.transfer, new RenderPanel(app), new LightPanel(app), app.clip, new ViewPanel(app), new TimePanel(app), save_panel];
+const panels = [app.transfer, new TimePanel(app), new RenderPanel(app), new LightPanel(app), app.clip, new ViewPanel(app), save_panel];
 const toolbar = new Toolbar(app, by_id("toolbar"), by_id("corner"));
 by_id("sections").append(...panels.map((p) => p.root));
 by_id("panel-buttons").append(theme_button(() => app.transfer.redraw()));
@@ -42,14 +42,22 @@ const sent = new Map(); // generation -> {scene, time}: on its way to a picture
 let drawn_scene = null; // the last of ours that the server drew
 let unsent = false; // edited without a connection
 
+let update_waits = false;
 app.changed = () => {
+    if (state.scene && app.hello) app.transfer.update(); // at once: its editor goes on from there
+    if (!update_waits) requestAnimationFrame(update);
+    update_waits = true;
+};
+
+function update() {
+    update_waits = false;
     by_id("app").classList.toggle("panel-closed", !app.panel_open);
     by_id("sections").inert = !app.can_control;
     toolbar.update();
     if (!state.scene || !app.hello) return;
     for (const panel of panels) panel.update();
     app.redraw();
-};
+}
 
 let redraw_waits = false;
 app.redraw = () => {
@@ -118,13 +126,12 @@ function take_scene({ scene, view, generation }) {
     state.adopt({ ...scene, camera }, generation);
     if (app.can_control) state.amend((own) => (own.camera = fitted(own.camera, aspect, app.aspect)));
 }
-app.take_scene = take_scene;
 
-/// Where Reset leads: the server's own framing, also after a reload of the page, or else what came first.
+/// Where Reset leads: the server's own framing, also after a reload of the page; null where it is not known.
 function keep_home(framed_by_server, home) {
-    const stored = JSON.parse(sessionStorage.getItem("clvr.home") ?? "null");
     if (framed_by_server) sessionStorage.setItem("clvr.home", JSON.stringify(home));
-    if (framed_by_server || !app.home) app.home = !framed_by_server && stored?.name === home.name ? stored : home;
+    const stored = JSON.parse(sessionStorage.getItem("clvr.home") ?? "null");
+    app.home = stored?.name === home.name ? stored : null;
 }
 
 connection.on("hello", (hello) => {
@@ -174,17 +181,17 @@ connection.on("job", (job) => save_panel.job(job));
 
 connection.on("role", ({ role }) => {
     app.can_control = role === "control";
+    if (app.can_control) state.amend(() => {}); // the scene at the size of this window
     show_role();
 });
 
 function show_role() {
     if (app.can_control) messages.clear("role");
     else messages.show("You watch; somebody else controls the view.", { level: "info", key: "role", stays: true, action: { text: "Take control", run: () => connection.send({ type: "take_control" }) } });
-    if (app.can_control) send_scene(); // at the size of this window
     app.changed();
 }
 
-connection.on("clients", ({ count }) => (by_id("clients").textContent = count > 1 ? `${count} windows see this` : ""));
+connection.on("clients", ({ count }) => (by_id("clients").textContent = count > 1 ? ` · ${count} windows` : ""));
 
 // ---- the connection in words ----
 

@@ -101,5 +101,5 @@ function draw_colors(context, { width, height, scene, volume, automatic }) {
 }
 
 function draw_status(context, { width, height, status }) {
-    text(context, status, width - 16, height - 22, "right");
+    text(context, status, width - 16, width < 430 ? height - 48 : height - 22, "right"); // above the scale bar where it is narrow
 }

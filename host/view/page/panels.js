@@ -5,6 +5,7 @@ import { button, checkbox, choice, color_field, element, row, section, segments,
 import { show_standard_view } from "./keys.js";
 import { overlay_names } from "./overlays.js";
 import { setting_slider } from "./settings.js";
+import { clamp } from "./vectors.js";
 
 const usual_most_samples = 4096;
 
@@ -20,7 +21,7 @@ export class RenderPanel {
         this.background = choice("Background", [["transparent", "None"], ["environment", "Surroundings"], ["color", "Colour"]], (kind) => edit((s) => (s.background.kind = kind)));
         this.color = color_field("Background colour", (hex) => app.state.edit("background.color", (s) => (s.background.color = linear_of(hex))));
         this.tone = choice("Tone curve", [["filmic", "Filmic"], ["aces", "ACES"], ["reinhard", "Reinhard"], ["none", "None"]], (curve) => edit((s) => (s.tonemap = curve)));
-        this.detail = choice("Detail on screen", [["1", "Every pixel"], ["0.5", "Half (faster)"], ["0.25", "Quarter (fastest)"]], (share) => app.set_detail(Number(share)),
+        this.detail = choice("Detail", [["1", "Every pixel"], ["0.5", "Half (faster)"], ["0.25", "Quarter (fastest)"]], (share) => app.set_detail(Number(share)),
             "Fewer pixels come sooner; saved pictures are not changed by it");
         this.sliders = element("div");
         this.root = section("Picture", true, this.mode.root, this.sliders, this.background.root, this.color.root, this.tone.root, this.detail.root);
@@ -88,9 +89,12 @@ export class ViewPanel {
     }
 }
 
-/// The time step of a 4-D volume; hidden for others.
+/// The time step of a 4-D volume; hidden for others. A step is read from the file, so the next waits until the server has answered.
 export class TimePanel {
     #app;
+    #steps = 0;
+    #wanted = 0;
+    #asked = false;
 
     constructor(app) {
         this.#app = app;
@@ -99,14 +103,30 @@ export class TimePanel {
     }
 
     load() {
-        const app = this.#app, { time_steps, time_step } = app.volume;
+        const { time_steps, time_step } = this.#app.volume;
         this.root.hidden = !(time_steps > 1);
         if (this.root.hidden) return;
-        const last = time_steps - 1, go = (step) => app.connection.send({ type: "time_step", step });
-        const made = slider("Step", { low: 0, high: last, step: 1, allowed: (v) => Math.min(last, Math.max(0, Math.round(v))), help: `0 to ${last}` }, go);
-        made.set(time_step);
-        this.place.replaceChildren(made.root, row(button("‹ Before", () => go(Math.max(0, time_step - 1))), button("Next ›", () => go(Math.min(last, time_step + 1)))));
+        if (this.#steps !== time_steps) this.#build(time_steps);
+        const goes_on = this.#asked && this.#wanted !== time_step;
+        this.#asked = false;
+        if (goes_on) this.#go(this.#wanted);
+        else this.#wanted = time_step;
+        this.step.set(this.#wanted);
     }
 
     update() {}
+
+    #build(steps) {
+        const last = steps - 1, allowed = (step) => clamp(Math.round(step), 0, last);
+        this.#steps = steps;
+        this.step = slider("Step", { low: 0, high: last, step: 1, allowed, help: `0 to ${last}` }, (step) => this.#go(step));
+        this.place.replaceChildren(this.step.root, row(button("‹ Before", () => this.#go(allowed(this.#wanted - 1))), button("Next ›", () => this.#go(allowed(this.#wanted + 1)))));
+    }
+
+    #go(step) {
+        this.#wanted = step;
+        this.step.set(step);
+        if (!this.#asked) this.#app.connection.send({ type: "time_step", step });
+        this.#asked = true;
+    }
 }

@@ -127,7 +127,7 @@ export class SavePanel {
         if (!file) return;
         try {
             if (file.size > longest_scene) throw new Error(`${file.name} has ${file.size} bytes; a scene has at most ${longest_scene}.`);
-            await this.#app.load_scene(await file.text());
+            this.#app.load_scene(await file.text());
         } catch (error) {
             this.#app.messages.show(error.message);
         }

@@ -69,7 +69,7 @@ export function set(scene, key, value) {
 /// A slider of a plain setting of the scene: {root, update(scene)}.
 export function setting_slider(app, label, key, { logarithmic = false, unit = "", most = Infinity } = {}) {
     const { low, high, step } = app.settings.span(key);
-    const options = { low, high: Math.min(high, most), step, logarithmic, unit, help: app.settings.help(key), allowed: (v) => app.settings.allowed(key, v) };
+    const options = { low, high: Math.min(high, most), step, logarithmic, unit, help: app.settings.help(key), usual: app.settings.default_of(key), allowed: (v) => app.settings.allowed(key, v) };
     const made = slider(label, options, (value) => app.state.edit(key, (scene) => set(scene, key, value)));
     return { root: made.root, update: (scene) => made.set(get(scene, key) ?? app.settings.default_of(key)) };
 }

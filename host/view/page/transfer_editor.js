@@ -16,6 +16,8 @@ export class TransferEditor {
     #hovered = null;
     #added_at = -Infinity;
     selected = 0;
+    /// Low opacities get more room.
+    spread = false;
 
     /// host: {edit(key, transfer), held(bool), drop(), selected()}: how edits become the scene's.
     constructor(canvas, host) {
@@ -79,7 +81,7 @@ export class TransferEditor {
     }
 
     #layout() {
-        return new PlotLayout(this.#canvas.clientWidth, this.#canvas.clientHeight, this.#view);
+        return new PlotLayout(this.#canvas.clientWidth, this.#canvas.clientHeight, this.#view, this.spread);
     }
 
     /// What lies under the pointer: {part: "knot", index}, "first", "last", "bar", "curve", "plot".

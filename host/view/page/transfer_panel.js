@@ -1,6 +1,6 @@
 // The section of the transfer function: presets with words, the editor, the selected knot typed, files.
 import { css_of, hex_of, linear_of } from "./color.js";
-import { button, color_field, element, number_field, row, section } from "./controls.js";
+import { button, checkbox, color_field, element, number_field, row, section } from "./controls.js";
 import { TransferEditor } from "./transfer_editor.js";
 import { at, physical, shows_something, span, with_changed_knot } from "./transfer_function.js";
 
@@ -85,7 +85,11 @@ export class TransferPanel {
 
     #file_row() {
         const file = element("input", { type: "file", accept: ".json,application/json", class: "hidden", tabindex: "-1", "aria-label": "Transfer function file", onchange: () => this.#load(file) });
-        return element("div", {}, row(button("Load file…", () => file.click(), { title: "A JSON file of clvr or of ParaView" }), button("Save file", () => this.#app.save("transfer")),
+        const spread = checkbox("More room for low opacities", (on) => {
+            this.#editor.spread = on;
+            this.#editor.draw();
+        });
+        return element("div", {}, spread.root, row(button("Load file…", () => file.click(), { title: "A JSON file of clvr or of ParaView" }), button("Save file", () => this.#app.save("transfer")),
             button("Fit axis", () => this.#editor.fit(), { title: "Shows the whole range of values (double click)" })), file);
     }
 

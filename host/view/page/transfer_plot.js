@@ -8,8 +8,9 @@ const bar_height = 16;
 
 /// Where things lie in a plot of `width` x `height` CSS pixels that shows the values view[0]..view[1].
 export class PlotLayout {
-    constructor(width, height, view) {
-        Object.assign(this, { width, height, view, left: margin, right: width - margin, top, bottom: height - below_plot });
+    /// `spread`: low opacities get more room, as their square roots.
+    constructor(width, height, view, spread) {
+        Object.assign(this, { width, height, view, spread, left: margin, right: width - margin, top, bottom: height - below_plot });
         this.strip = this.bottom + 4; // colours
         this.bar = height - bar_height - 2; // shifts and stretches
     }
@@ -20,10 +21,11 @@ export class PlotLayout {
         return this.view[0] + ((x - this.left) / (this.right - this.left)) * (this.view[1] - this.view[0]);
     }
     y(opacity) {
-        return this.bottom - opacity * (this.bottom - this.top);
+        return this.bottom - (this.spread ? Math.sqrt(opacity) : opacity) * (this.bottom - this.top);
     }
     opacity(y) {
-        return (this.bottom - y) / (this.bottom - this.top);
+        const share = Math.max(0, (this.bottom - y) / (this.bottom - this.top));
+        return this.spread ? share * share : share;
     }
 }
 
@@ -75,7 +77,10 @@ function draw_curve(context, layout, { transfer, colors }) {
     const line = () => {
         context.beginPath();
         context.moveTo(layout.left, layout.y(points[0].opacity));
-        for (const p of points) context.lineTo(layout.x(p.value), layout.y(p.opacity));
+        points.forEach((p, i) => {
+            if (layout.spread && i > 0) curve_to(context, layout, points[i - 1], p);
+            context.lineTo(layout.x(p.value), layout.y(p.opacity));
+        });
         context.lineTo(layout.right, layout.y(points[points.length - 1].opacity));
         context.stroke();
     };
@@ -86,6 +91,14 @@ function draw_curve(context, layout, { transfer, colors }) {
     context.lineWidth = 1.75;
     context.strokeStyle = colors.ink;
     line();
+}
+
+/// Between two knots the opacity is linear, so its root is not.
+function curve_to(context, layout, from, to) {
+    for (let k = 1; k < 24; ++k) {
+        const s = to.opacity > from.opacity ? (k / 24) ** 2 : 1 - (1 - k / 24) ** 2; // closer together where the root is steep
+        context.lineTo(layout.x(from.value + s * (to.value - from.value)), layout.y(from.opacity + s * (to.opacity - from.opacity)));
+    }
 }
 
 function draw_strip(context, layout, { transfer }) {
