@@ -102,7 +102,7 @@ connection.on("picture", (arrived) => {
 
 state.subscribe((_, by) => {
     if (by !== "server" && app.can_control) send_scene();
-    if (by === "edit") by_id("hint").hidden = true;
+    if (by === "edit") by_id("hint").hidden = true; // the user has found out
     app.changed();
 });
 
@@ -144,10 +144,9 @@ connection.on("hello", (hello) => {
     by_id("device").textContent = `${hello.device} · clvr ${hello.version}`;
     for (const panel of panels) panel.load();
     app.fit_window();
-    if (keeps_own && app.can_control) {
-        state.generation = Math.max(state.generation, hello.generation) + 1;
-        send_scene();
-        app.changed();
+    if (keeps_own) {
+        state.generation = Math.max(state.generation, hello.generation);
+        state.amend(() => {}); // is sent, now or when control comes back
     } else take_scene(hello);
     if (had_control && !app.can_control) connection.send({ type: "take_control" }); // it was ours when the connection was lost
     show_role();

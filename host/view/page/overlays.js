@@ -80,7 +80,7 @@ function draw_axes(context, { height, camera, volume }) {
     context.globalAlpha = 1;
 }
 
-/// The values that the volume has and the function covers, from the first that is visible.
+/// The values that the volume has and the function covers.
 function draw_colors(context, { width, height, scene, volume, automatic }) {
     const transfer = physical(scene.transfer ?? automatic, volume.range), [first, last] = span(transfer);
     const low = Math.max(first, volume.range[0]), high = Math.min(last, volume.range[1]);
