@@ -1,6 +1,9 @@
 // The camera: a value {eye, target, up, fov, orthographic, height, zoom} in LPS millimetres, as scene files hold it, and what moves it.
-// Every function takes a camera and gives a new one. `up` is always that of the picture, so it is never parallel to the view.
+// Every function takes a camera and gives a new one. `up` is the world's z, or the picture's own where that is not upwards: never parallel to
+// the view.
 import { add, along, clamp, cross, direction, inner, norm, radian, rotate, scale, subtract, unit } from "./vectors.js";
+
+const steepest = 89.9; // degrees at which z still is upwards
 
 /// Unit right, up and forward of the view. They are the ones of the renderer.
 export function frame(camera) {
@@ -46,8 +49,8 @@ export function angles(camera) {
 
 /// Looks at the target from a direction [degrees], with the world's z upwards in the picture.
 export function look_from(camera, azimuth, elevation) {
-    const e = clamp(elevation, -90, 90);
-    return { ...camera, eye: along(camera.target, direction(azimuth, e), distance(camera)), up: direction(azimuth, e + 90) };
+    const e = clamp(elevation, -90, 90), up = Math.abs(e) < steepest ? [0, 0, 1] : direction(azimuth, e + 90);
+    return { ...camera, eye: along(camera.target, direction(azimuth, e), distance(camera)), up };
 }
 
 /// Turns around the target by angles [degrees], as if the hand moved the volume. The turntable keeps the horizon level.

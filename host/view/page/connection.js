@@ -51,7 +51,8 @@ export class Connection {
         document.addEventListener("visibilitychange", () => this.send({ type: "pause", paused: document.hidden }));
     }
 
-    /// Handlers of a message's type; and of "picture", "open" and "lost" ({message, retry_ms}; retry_ms is null when it does not try again).
+    /// Handlers of a message's type; and of "picture", "open" and "lost" ({message, retry_ms, ended, refused}; retry_ms is null
+    /// when it does not try again).
     on(type, handler) {
         this.#handlers.set(type, [...(this.#handlers.get(type) ?? []), handler]);
     }
@@ -143,11 +144,11 @@ export class Connection {
         this.#socket = null;
         for (const { reject } of this.#waiting.values()) reject(new Error("The connection to clvr was lost."));
         this.#waiting.clear();
-        const refused = event.code === policy_violation || event.code >= 4000;
+        const refused = event.code === policy_violation;
         const retry_ms = refused || this.#ended ? null : this.#wait_ms;
         this.#wait_ms = Math.min(longest_wait_ms, this.#wait_ms * 2);
         if (retry_ms !== null) this.#timer = setTimeout(() => this.open(), retry_ms);
-        this.#tell("lost", { message: event.reason, retry_ms, ended: this.#ended });
+        this.#tell("lost", { message: event.reason, retry_ms, ended: this.#ended, refused });
     }
 
     #tell(type, message) {

@@ -197,8 +197,9 @@ connection.on("clients", ({ count }) => (by_id("clients").textContent = count > 
 let last_words = "";
 connection.on("bye", ({ message }) => (last_words = message));
 connection.on("open", () => (last_words = ""));
-connection.on("lost", ({ message, retry_ms, ended }) => {
-    const why = last_words || message || (ended ? "clvr view has ended." : "The connection to clvr was lost.");
+connection.on("lost", ({ message, retry_ms, ended, refused }) => {
+    const otherwise = ended ? "clvr view has ended." : "The connection to clvr was lost.";
+    const why = refused ? `clvr refused this window (${message}). Open the address that clvr view printed last.` : last_words || message || otherwise;
     const then = retry_ms === null ? "" : ` Trying again in ${Math.max(1, Math.round(retry_ms / 1000))} s.`;
     messages.show(why + then, { level: ended ? "info" : "error", key: "connection", stays: true, action: { text: "Connect now", run: () => connection.open() } });
 });

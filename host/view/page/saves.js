@@ -84,6 +84,7 @@ export class SavePanel {
     /// A job's news from the server. What this page asked for is downloaded when it is ready.
     job(job) {
         if (!this.#rows.has(job.job)) this.#add(job);
+        this.#take(job);
         const shown = this.#rows.get(job.job), before = shown.state;
         shown.state = job.state;
         shown.words.textContent = `${job.name || job.what}: ${words[job.state] ?? job.state}${job.message ? `, ${job.message}` : ""}`;
@@ -93,18 +94,24 @@ export class SavePanel {
         const cancel = () => this.#app.connection.send({ type: "cancel", job: job.job });
         const actions = { waiting: ["Cancel", cancel], running: ["Cancel", cancel], done: ["Download", () => this.#download(job)] }[job.state];
         shown.actions.replaceChildren(...(actions ? [button(...actions)] : []), ...(finished.has(job.state) ? [button("×", () => shown.root.remove(), { "aria-label": "Remove from the list" })] : []));
-        if (job.state === "failed") this.#app.messages.show(`${job.name || job.what} could not be saved: ${job.message}`);
-        if (job.state === "done" && before !== undefined && this.#own.has(job.job)) this.#download(job);
+        if (job.state === "failed" && this.#own.has(job.job)) this.#app.messages.show(`${job.name || job.what} could not be saved: ${job.message}`);
+        if (job.state === "done" && this.#own.has(job.job)) this.#download(job);
     }
 
     #add(job) {
-        const expected = this.#expected.findIndex((e) => e.what === job.what);
-        if (expected >= 0) this.#own.set(job.job, this.#expected.splice(expected, 1)[0].overlays);
         const parts = { words: element("span", { role: "status" }), bar: element("progress", { max: 1, "aria-label": "Progress" }), actions: element("span", { class: "actions" }) };
         const root = element("li", {}, parts.words, parts.bar, parts.actions);
-        this.#rows.set(job.job, { root, ...parts, state: expected >= 0 ? null : undefined });
+        this.#rows.set(job.job, { root, ...parts, state: null });
         this.jobs.prepend(root);
-        if (expected >= 0 && job.what !== "transfer") this.root.open = true;
+    }
+
+    /// The first news of what this page asked for has the id of its message.
+    #take(job) {
+        const asked = this.#expected.find((e) => e.id === job.id);
+        if (!asked) return;
+        this.#expected = this.#expected.filter((e) => e !== asked);
+        this.#own.set(job.job, asked.overlays);
+        if (asked.what !== "transfer") this.root.open = true;
     }
 
     async #download(job) {
@@ -112,7 +119,7 @@ export class SavePanel {
             const answer = await this.#app.connection.fetch(job.url);
             let blob = await answer.blob();
             const overlays = this.#own.get(job.job);
-            if (overlays) blob = await with_overlays(blob, overlays);
+            if (overlays) blob = await with_overlays(blob, job.name.endsWith(".png") ? "image/png" : "image/jpeg", overlays);
             const url = URL.createObjectURL(blob);
             element("a", { href: url, download: job.name || job.url.split("/").pop() }).click();
             setTimeout(() => URL.revokeObjectURL(url), 60000);
@@ -135,11 +142,10 @@ export class SavePanel {
 }
 
 /// A still with the overlays drawn into it, as large as they would be in a window 800 pixels high.
-async function with_overlays(blob, facts) {
+async function with_overlays(blob, type, facts) {
     const bitmap = await createImageBitmap(blob), { width, height } = bitmap;
     const canvas = new OffscreenCanvas(width, height), context = canvas.getContext("2d");
-    if (blob.type === "image/jpeg") context.fillRect(0, 0, width, height);
     context.drawImage(bitmap, 0, 0);
     draw_overlays(context, { ...facts, x: 0, y: 0, width, height, pixel: Math.max(0.5, Math.min(width, height) / 800) });
-    return canvas.convertToBlob({ type: blob.type || "image/png", quality: 0.95 });
+    return canvas.convertToBlob({ type, quality: 0.95 });
 }
