@@ -35,8 +35,8 @@ export class App {
 
     /// Where the picture lies on the stage [CSS pixels].
     frame() {
-        const { width, height } = this.picture.shown ? { width: this.picture.shown.full_width, height: this.picture.shown.full_height } : this.state.size;
-        const at = this.picture.place(width, height), ratio = this.picture.ratio;
+        const { shown, ratio } = this.picture, { size } = this.state;
+        const at = this.picture.place(shown?.full_width ?? size.width, shown?.full_height ?? size.height);
         return { x: at.x / ratio, y: at.y / ratio, width: at.width / ratio, height: at.height / ratio };
     }
 
@@ -95,7 +95,8 @@ export class App {
     /// The server's framing of what is visible, else all of the volume.
     reset_view() {
         const { home, aspect, volume } = this;
-        this.move_camera(null, (camera) => (home ? fitted(home.camera, home.aspect, aspect) : framed(camera, corners(volume, whole_box), aspect, 30, 12)));
+        const whole = (camera) => framed(camera, corners(volume, whole_box), aspect, 30, 12);
+        this.move_camera(null, home ? () => fitted(home.camera, home.aspect, aspect) : whole);
     }
 
     set_orthographic(on) {
@@ -143,7 +144,8 @@ export class App {
 
     /// What draw_overlays needs to know.
     overlay_facts() {
-        return { camera: this.camera, scene: this.state.scene, volume: this.volume, automatic: this.automatic, status: this.status, shown: this.overlays };
+        const { camera, volume, automatic, status, overlays } = this;
+        return { camera, scene: this.state.scene, volume, automatic, status, shown: overlays };
     }
 
     /// The server answers all with the scene, or refuses.

@@ -12,7 +12,7 @@ export function frame(camera) {
     return { right, up: cross(right, forward), forward };
 }
 
-export const distance = (camera) => norm(subtract(camera.target, camera.eye));
+const distance = (camera) => norm(subtract(camera.target, camera.eye));
 
 /// Height of what the picture shows at the target [mm].
 export function view_height(camera) {
@@ -71,7 +71,7 @@ export function pan(camera, to_right, downwards) {
     return moved(camera, add(scale(right, -to_right * height), scale(up, downwards * height)));
 }
 
-export function moved(camera, by) {
+function moved(camera, by) {
     return { ...camera, eye: add(camera.eye, by), target: add(camera.target, by) };
 }
 

@@ -14,7 +14,7 @@ export function with_side(box, side, share) {
 }
 
 /// The plane through the volume's centre that looks along a direction; what lies beyond it goes.
-export const plane_through_centre = (volume, normal) => ({ normal, offset: inner(normal, centre(volume)) });
+const plane_through_centre = (volume, normal) => ({ normal, offset: inner(normal, centre(volume)) });
 
 export class ClipPanel {
     #app;
@@ -51,10 +51,12 @@ export class ClipPanel {
                 (percent) => this.#edit("clip_box", with_side(this.#app.state.scene.clip_box ?? whole_box, side, percent / 100), `clip_box.${side}`));
         });
         this.sliders.replaceChildren(...[0, 3, 1, 4, 2, 5].map((side) => this.#box_sliders[side].root));
-        this.across.replaceChildren(...[0, 1, 2].map((axis) => button(name_of_plane(volume, axis), () => this.#edit("clip_plane", plane_through_centre(volume, axis_direction(volume, axis))),
-            { title: "Through the middle of the volume" })));
+        const cut = (axis) => this.#edit("clip_plane", plane_through_centre(volume, axis_direction(volume, axis)));
+        const title = "Through the middle of the volume";
+        this.across.replaceChildren(...[0, 1, 2].map((axis) => button(name_of_plane(volume, axis), () => cut(axis), { title })));
         const middle = centre(volume), half = diagonal(volume) / 2;
-        this.offset = slider("Depth", { low: -half, high: half, step: half / 250, unit: "mm", help: "Distance of the plane from the volume's centre" },
+        const help = "Distance of the plane from the volume's centre";
+        this.offset = slider("Depth", { low: -half, high: half, step: half / 250, unit: "mm", help },
             (mm) => this.#edit("clip_plane", this.#at_depth(mm), "clip_plane.offset"));
         this.offset_place.replaceChildren(this.offset.root);
         this.middle = middle;

@@ -60,19 +60,20 @@ function side_drag(app, dot, width, height) {
     shares[axis] = 1;
     const along_axis = subtract(at_shares(volume, shares), at_shares(volume, [0, 0, 0]));
     const moved = pixels_along(app, dot.point, along_axis, width, height);
-    return { key: "clip_box.drag", total: (dx, dy) => app.state.edit("clip_box.drag", (scene) => (scene.clip_box = with_side(from, dot.side, from[dot.side] + moved(dx, dy)))) };
+    const box = (dx, dy) => with_side(from, dot.side, from[dot.side] + moved(dx, dy));
+    return { total: (dx, dy) => app.state.edit("clip_box.drag", (scene) => (scene.clip_box = box(dx, dy))) };
 }
 
 function offset_drag(app, dot, width, height) {
     const from = app.state.scene.clip_plane, moved = pixels_along(app, dot.point, unit(from.normal), width, height);
-    return { key: "clip_plane.drag", total: (dx, dy) => app.state.edit("clip_plane.drag", (scene) => (scene.clip_plane.offset = from.offset + moved(dx, dy) * norm(from.normal))) };
+    const offset = (dx, dy) => from.offset + moved(dx, dy) * norm(from.normal);
+    return { total: (dx, dy) => app.state.edit("clip_plane.drag", (scene) => (scene.clip_plane.offset = offset(dx, dy))) };
 }
 
 /// The tip follows the pointer in the plane of the picture; the plane turns around its own point.
 function tilt_drag(app, height) {
     const { point, tip } = plane_points(app), { right, up } = frame(app.camera), mm = view_height(app.camera) / height;
     return {
-        key: "clip_plane.tilt",
         total: (dx, dy) => {
             const normal = unit(subtract(add(tip, add(scale(right, dx * mm), scale(up, -dy * mm))), point));
             app.state.edit("clip_plane.tilt", (scene) => (scene.clip_plane = { normal, offset: inner(normal, point) }));

@@ -14,7 +14,7 @@ export function element(name, attributes = {}, ...children) {
 }
 
 let last_id = 0;
-export const new_id = (prefix) => `${prefix}-${++last_id}`;
+const new_id = (prefix) => `${prefix}-${++last_id}`;
 
 /// A number for people: at most four digits that count.
 export function readable(value) {
@@ -29,7 +29,8 @@ export function readable(value) {
 /// A part of the panel that folds; it remembers whether it was open.
 export function section(title, open, ...children) {
     const key = `clvr.open.${title}`;
-    const details = element("details", { class: "section" }, element("summary", {}, element("h2", {}, title)), element("div", { class: "body" }, ...children));
+    const summary = element("summary", {}, element("h2", {}, title));
+    const details = element("details", { class: "section" }, summary, element("div", { class: "body" }, ...children));
     details.open = JSON.parse(localStorage.getItem(key) ?? String(open));
     details.addEventListener("toggle", () => localStorage.setItem(key, String(details.open)));
     return details;
@@ -49,16 +50,18 @@ export function checkbox(label, changed, title = "") {
 /// A list to choose from: options are [value, text].
 export function choice(label, options, changed, title = "") {
     const id = new_id("choice");
-    const select = element("select", { id, onchange: () => changed(select.value) }, ...options.map(([value, text]) => element("option", { value }, text)));
+    const entries = options.map(([value, text]) => element("option", { value }, text));
+    const select = element("select", { id, onchange: () => changed(select.value) }, ...entries);
     const root = element("div", { class: "field", title }, element("label", { for: id }, label), select);
-    return { root, set: (value) => (select.value = value), options: select.options };
+    return { root, set: (value) => (select.value = value) };
 }
 
 /// A few choices side by side, one of which holds.
 export function segments(label, options, changed) {
     const name = new_id("segment");
     const inputs = options.map(([value]) => element("input", { type: "radio", name, value, id: `${name}-${value}`, onchange: () => changed(value) }));
-    const parts = options.map(([value, text, title], i) => element("span", {}, inputs[i], element("label", { for: `${name}-${value}`, title: title ?? "" }, text)));
+    const labels = options.map(([value, text, title]) => element("label", { for: `${name}-${value}`, title: title ?? "" }, text));
+    const parts = inputs.map((input, i) => element("span", {}, input, labels[i]));
     const root = element("fieldset", { class: "segments" }, element("legend", { class: "hidden" }, label), ...parts);
     return { root, set: (value) => inputs.forEach((i) => (i.checked = i.value === value)) };
 }
@@ -68,6 +71,17 @@ export function color_field(label, changed) {
     const id = new_id("color");
     const input = element("input", { type: "color", id, oninput: () => changed(input.value) });
     return { root: element("div", { class: "field" }, element("label", { for: id }, label), input), set: (value) => (input.value = value) };
+}
+
+/// A field for a file, hidden: open() asks for one, and taken(file) is called with it.
+export function file_input(label, accept, taken) {
+    const root = element("input", { type: "file", accept, class: "hidden", tabindex: "-1", "aria-label": label });
+    root.addEventListener("change", () => {
+        const [file] = root.files;
+        root.value = ""; // the same file may be chosen again
+        if (file) taken(file);
+    });
+    return { root, open: () => root.click() };
 }
 
 /// Tells while a number is being typed, so that nothing overwrites it, and takes it when it is finite.
@@ -86,7 +100,8 @@ export function number_field(label, changed, { unit = "", step = "any", title = 
     const input = element("input", { type: "number", step, id, inputmode: "decimal" });
     let typing = false;
     when_typed(input, (is_typing) => (typing = is_typing), changed);
-    const root = element("div", { class: "field", title }, element("label", { for: id }, label), input, unit ? element("span", { class: "unit" }, unit) : null);
+    const unit_text = unit ? element("span", { class: "unit" }, unit) : null;
+    const root = element("div", { class: "field", title }, element("label", { for: id }, label), input, unit_text);
     return { root, input, set: (value) => !typing && (input.value = value === null ? "" : readable(value)) };
 }
 
@@ -97,7 +112,8 @@ export function slider(label, options, changed) {
     const to = options.logarithmic ? Math.log : (x) => x, from = options.logarithmic ? Math.exp : (x) => x;
     const allowed = options.allowed ?? ((x) => x);
     const step = options.logarithmic ? (to(options.high) - to(options.low)) / 500 : options.step;
-    const range = element("input", { type: "range", id, min: String(to(options.low)), max: String(to(options.high)), step: String(step), "aria-describedby": help });
+    const range = element("input", { type: "range", id, min: String(to(options.low)), max: String(to(options.high)), step: String(step) });
+    if (help) range.setAttribute("aria-describedby", help);
     const typed = element("input", { type: "number", step: "any", inputmode: "decimal", "aria-label": `${label}, typed` });
     let typing = false;
     const show = (value) => {

@@ -40,7 +40,8 @@ export class Help {
         this.#dialog = dialog;
         const parts = sheet.map(([title, lines]) => element("section", {}, element("h3", {}, title),
             element("dl", {}, ...lines.flatMap(([keys, words]) => [element("dt", {}, keys), element("dd", {}, words)]))));
-        dialog.append(element("header", {}, element("h2", {}, "Help"), button("Close", () => dialog.close())), element("div", { class: "sheet" }, ...parts));
+        const header = element("header", {}, element("h2", {}, "Help"), button("Close", () => dialog.close()));
+        dialog.append(header, element("div", { class: "sheet" }, ...parts));
         dialog.addEventListener("click", (event) => event.target === dialog && dialog.close());
         dialog.addEventListener("keydown", (event) => {
             event.stopPropagation(); // the page's own keys rest

@@ -13,7 +13,8 @@ export function show_standard_view(app, key) {
 export function listen_to_keys(app, surface) {
     document.addEventListener("keydown", (event) => {
         if (document.querySelector("dialog[open]") || typing(event.target)) return;
-        const action = event.ctrlKey || event.metaKey ? with_control(app, event) : plain(app, event) ?? (event.target === surface ? in_picture(app, event) : null);
+        const control = event.ctrlKey || event.metaKey, of_picture = event.target === surface ? in_picture : () => null;
+        const action = control ? with_control(app, event) : plain(app, event) ?? of_picture(app, event);
         if (!action) return;
         event.preventDefault();
         action();

@@ -6,10 +6,10 @@ import { add, clamp, direction, inner, radian, scale, unit } from "./vectors.js"
 const side = 92; // [CSS pixels]
 
 /// Unit direction to the key light in the world; its azimuth is relative to the camera's.
-export const key_direction = (camera, light) => direction(angles(camera).azimuth + light.key_azimuth, light.key_elevation);
+const key_direction = (camera, light) => direction(angles(camera).azimuth + light.key_azimuth, light.key_elevation);
 
 /// key_azimuth and key_elevation of a direction in the world [degrees].
-export function key_angles(camera, to_light) {
+function key_angles(camera, to_light) {
     const azimuth = Math.atan2(to_light[0], -to_light[1]) / radian - angles(camera).azimuth;
     return { key_azimuth: ((((azimuth + 180) % 360) + 360) % 360) - 180, key_elevation: Math.asin(clamp(to_light[2], -1, 1)) / radian };
 }

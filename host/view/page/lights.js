@@ -1,6 +1,5 @@
-// The section of light and material: environment, key light, headlight, density, shading, phase.
-import { button, choice, element, row, section, slider } from "./controls.js";
-import { diagonal } from "./geometry.js";
+// The section of light and material: environment, key light, headlight, shading, phase.
+import { button, choice, element, file_input, row, section } from "./controls.js";
 import { LightSphere } from "./light_sphere.js";
 import { setting_slider } from "./settings.js";
 
@@ -12,16 +11,18 @@ export class LightPanel {
     constructor(app) {
         this.#app = app;
         this.sphere = new LightSphere(app);
-        this.environment = choice("Surroundings", [["sky", "Sky"], ["constant", "Even light"], ["image", "Picture…"]], (kind) => this.#choose(kind));
-        this.file = element("input", { type: "file", accept: ".hdr,.exr", class: "hidden", tabindex: "-1", "aria-label": "Picture of the surroundings", onchange: () => this.#upload() });
+        const surroundings = [["sky", "Sky"], ["constant", "Even light"], ["image", "Picture…"]];
+        this.environment = choice("Surroundings", surroundings, (kind) => this.#choose(kind));
+        this.file = file_input("Picture of the surroundings", ".hdr,.exr", (file) => this.#upload(file));
         this.name = element("span", { class: "note" });
-        this.upload_row = row(button("Another picture…", () => this.file.click()), this.name);
+        this.upload_row = row(button("Another picture…", () => this.file.open()), this.name);
         this.sliders = element("div");
         this.sources = element("div");
-        this.shading = choice("Shading", [["auto", "Automatic"], ["gradient", "Like surfaces"], ["phase", "Like fog"]], (value) => app.state.edit(null, (s) => (s.shading = value)),
+        const shadings = [["auto", "Automatic"], ["gradient", "Like surfaces"], ["phase", "Like fog"]];
+        this.shading = choice("Shading", shadings, (value) => app.state.edit(null, (scene) => (scene.shading = value)),
             "Surfaces where values change, fog where they do not; or one of them everywhere");
         this.material = element("div");
-        this.root = section("Light and material", false, this.environment.root, this.file, this.upload_row,
+        this.root = section("Light and material", false, this.environment.root, this.file.root, this.upload_row,
             element("div", { class: "sphere-row" }, this.sphere.root, this.sliders), this.sources, this.shading.root, this.material);
         this.root.addEventListener("toggle", () => this.root.open && app.state.scene && this.sphere.draw());
     }
@@ -34,12 +35,8 @@ export class LightPanel {
         this.parts = [made("Brightness", "light.level"), made("Key light", "light.key"), made("Headlight", "light.headlight"), this.rotation];
         this.directions = [made("From the side", "light.key_azimuth"), made("Height", "light.key_elevation"), made("Softness", "light.key_angle")];
         this.sliders.replaceChildren(...this.directions.map((s) => s.root));
-        const usual = 512 / diagonal(app.volume);
-        this.density = slider("Density", { usual: 0, low: usual / 100, high: usual * 20, logarithmic: true, unit: "1/mm", help: app.settings.help("extinction"), allowed: (v) => app.settings.allowed("extinction", v) },
-            (value) => app.state.edit("extinction", (scene) => (scene.extinction = value)));
-        this.usual_density = usual;
         this.phase = made("Scattering", "phase_g");
-        this.material.replaceChildren(this.density.root, this.phase.root);
+        this.material.replaceChildren(this.phase.root);
         this.sources.replaceChildren(...this.parts.map((s) => s.root));
     }
 
@@ -49,7 +46,6 @@ export class LightPanel {
         this.upload_row.hidden = scene.light.environment !== "image";
         this.rotation.root.hidden = scene.light.environment !== "image";
         this.shading.set(scene.shading);
-        this.density.set(scene.extinction || this.usual_density); // 0: the usual one
         for (const s of [...this.parts, ...this.directions, this.phase]) s.update(scene);
         if (this.root.open) this.sphere.draw();
     }
@@ -57,16 +53,13 @@ export class LightPanel {
     #choose(kind) {
         if (kind === "image") {
             this.environment.set(this.#app.state.scene.light.environment);
-            this.file.click();
+            this.file.open();
             return;
         }
         this.#app.state.edit(null, (scene) => Object.assign(scene.light, { environment: kind, image: "" }));
     }
 
-    async #upload() {
-        const [file] = this.file.files;
-        this.file.value = "";
-        if (!file) return;
+    async #upload(file) {
         try {
             if (file.size > largest_upload) throw new Error(`${file.name} is larger than 64 MiB.`);
             this.#app.messages.show(`Sending ${file.name} …`, { level: "info", key: "upload", stays: true });

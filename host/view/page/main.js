@@ -32,6 +32,7 @@ app.transfer = new TransferPanel(app);
 app.clip = new ClipPanel(app);
 const save_panel = new SavePanel(app);
 const panels = [app.transfer, new TimePanel(app), new RenderPanel(app), new LightPanel(app), app.clip, new ViewPanel(app), save_panel];
+app.save = (what) => save_panel.save(what);
 const toolbar = new Toolbar(app, by_id("toolbar"), by_id("corner"));
 by_id("sections").append(...panels.map((p) => p.root));
 by_id("panel-buttons").append(theme_button(() => app.transfer.redraw()));
@@ -53,6 +54,7 @@ function update() {
     update_waits = false;
     by_id("app").classList.toggle("panel-closed", !app.panel_open);
     by_id("sections").inert = !app.can_control;
+    by_id("stage").classList.toggle("watching", !app.can_control);
     toolbar.update();
     if (!state.scene || !app.hello) return;
     for (const panel of panels) panel.update();
@@ -71,7 +73,8 @@ function draw_over() {
     context.clearRect(0, 0, surface.width, surface.height);
     if (!app.volume || !picture.shown) return;
     const { ratio } = picture, frame = app.frame();
-    draw_overlays(context, { ...app.overlay_facts(), x: frame.x * ratio, y: frame.y * ratio, width: frame.width * ratio, height: frame.height * ratio, pixel: ratio });
+    const place = { x: frame.x * ratio, y: frame.y * ratio, width: frame.width * ratio, height: frame.height * ratio };
+    draw_overlays(context, { ...app.overlay_facts(), ...place, pixel: ratio });
     context.save();
     context.scale(ratio, ratio);
     context.translate(frame.x, frame.y);
@@ -185,8 +188,9 @@ connection.on("role", ({ role }) => {
 });
 
 function show_role() {
+    const take = { text: "Take control", run: () => connection.send({ type: "take_control" }) };
     if (app.can_control) messages.clear("role");
-    else messages.show("You watch; somebody else controls the view.", { level: "info", key: "role", stays: true, action: { text: "Take control", run: () => connection.send({ type: "take_control" }) } });
+    else messages.show("You watch; somebody else controls the view.", { level: "info", key: "role", stays: true, action: take });
     app.changed();
 }
 
@@ -201,7 +205,8 @@ connection.on("lost", ({ message, retry_ms, ended, refused }) => {
     const otherwise = ended ? "clvr view has ended." : "The connection to clvr was lost.";
     const why = refused ? `clvr refused this window (${message}). Open the address that clvr view printed last.` : last_words || message || otherwise;
     const then = retry_ms === null ? "" : ` Trying again in ${Math.max(1, Math.round(retry_ms / 1000))} s.`;
-    messages.show(why + then, { level: ended ? "info" : "error", key: "connection", stays: true, action: { text: "Connect now", run: () => connection.open() } });
+    const connect = { text: "Connect now", run: () => connection.open() };
+    messages.show(why + then, { level: ended ? "info" : "error", key: "connection", stays: true, action: connect });
 });
 
 // ---- the window ----
@@ -243,4 +248,4 @@ by_id("sheet-toggle").addEventListener("click", () => app.toggle_panel());
 
 app.changed();
 if (token) connection.open();
-else messages.show("This page needs the whole address that clvr view printed, with the token behind the #.", { key: "connection", stays: true, action: { text: "Reload", run: () => location.reload() } });
+else messages.show("This page needs the whole address that clvr view printed, with the token behind the #.", { stays: true });

@@ -4,10 +4,18 @@ import { hex_of, linear_of } from "./color.js";
 import { button, checkbox, choice, color_field, element, row, section, segments, slider } from "./controls.js";
 import { show_standard_view } from "./keys.js";
 import { overlay_names } from "./overlays.js";
-import { setting_slider } from "./settings.js";
+import { setting_slider, slider_options } from "./settings.js";
 import { clamp } from "./vectors.js";
 
 const usual_most_samples = 4096;
+const modes = [
+    ["path", "Path traced", "Light as it travels, denoised"],
+    ["dvr", "Direct", "Emission and absorption, without shadows"],
+    ["mip", "Maximum", "The greatest value along each ray"],
+];
+const backgrounds = [["transparent", "None"], ["environment", "Surroundings"], ["color", "Colour"]];
+const tone_curves = [["filmic", "Filmic"], ["aces", "ACES"], ["reinhard", "Reinhard"], ["none", "None"]];
+const details = [["1", "Every pixel"], ["0.5", "Half (faster)"], ["0.25", "Quarter (fastest)"]];
 
 /// Mode, samples, bounces, tone.
 export class RenderPanel {
@@ -16,12 +24,11 @@ export class RenderPanel {
     constructor(app) {
         this.#app = app;
         const edit = (change) => app.state.edit(null, change);
-        this.mode = segments("How the picture is made", [["path", "Path traced", "Light as it travels, denoised"], ["dvr", "Direct", "Emission and absorption, without shadows"], ["mip", "Maximum", "The greatest value along each ray"]],
-            (mode) => edit((s) => (s.mode = mode)));
-        this.background = choice("Background", [["transparent", "None"], ["environment", "Surroundings"], ["color", "Colour"]], (kind) => edit((s) => (s.background.kind = kind)));
+        this.mode = segments("How the picture is made", modes, (mode) => edit((s) => (s.mode = mode)));
+        this.background = choice("Background", backgrounds, (kind) => edit((s) => (s.background.kind = kind)));
         this.color = color_field("Background colour", (hex) => app.state.edit("background.color", (s) => (s.background.color = linear_of(hex))));
-        this.tone = choice("Tone curve", [["filmic", "Filmic"], ["aces", "ACES"], ["reinhard", "Reinhard"], ["none", "None"]], (curve) => edit((s) => (s.tonemap = curve)));
-        this.detail = choice("Detail", [["1", "Every pixel"], ["0.5", "Half (faster)"], ["0.25", "Quarter (fastest)"]], (share) => app.set_detail(Number(share)),
+        this.tone = choice("Tone curve", tone_curves, (curve) => edit((s) => (s.tonemap = curve)));
+        this.detail = choice("Detail", details, (share) => app.set_detail(Number(share)),
             "Fewer pixels come sooner; saved pictures are not changed by it");
         this.sliders = element("div");
         this.root = section("Picture", true, this.mode.root, this.sliders, this.background.root, this.color.root, this.tone.root, this.detail.root);
@@ -29,8 +36,9 @@ export class RenderPanel {
 
     load() {
         const app = this.#app, most = Math.min(app.hello.limits?.samples ?? usual_most_samples, usual_most_samples);
-        this.parts = [setting_slider(app, "Samples", "spp", { logarithmic: true, most }), setting_slider(app, "Exposure", "exposure", { unit: "stops" }),
-            setting_slider(app, "Bounces", "bounces"), setting_seed(app)];
+        const samples = setting_slider(app, "Samples", "spp", { logarithmic: true, most });
+        const exposure = setting_slider(app, "Exposure", "exposure", { unit: "stops" });
+        this.parts = [samples, exposure, setting_slider(app, "Bounces", "bounces"), setting_seed(app)];
         this.sliders.replaceChildren(...this.parts.map((p) => p.root));
     }
 
@@ -73,9 +81,8 @@ export class ViewPanel {
         const views = [["1", "Front"], ["3", anatomical ? "Left" : "Side"], ["7", "Top"], ["9", "Opposite"]];
         this.views.replaceChildren(...views.map(([key, text]) => button(text, () => show_standard_view(app, key), { title: `Key ${key}` })),
             button("Reset", () => app.reset_view(), { title: "Key R" }));
-        const { low, high, step } = app.settings.span("camera.fov");
-        this.fov = slider("Field of view", { low, high, step, unit: "°", help: app.settings.help("camera.fov"), allowed: (v) => app.settings.allowed("camera.fov", v) },
-            (fov) => app.move_camera("camera.fov", (camera) => with_fov(camera, fov)));
+        const options = slider_options(app.settings, "camera.fov", { unit: "°" });
+        this.fov = slider("Field of view", options, (fov) => app.move_camera("camera.fov", (camera) => with_fov(camera, fov)));
         this.fov_place.replaceChildren(this.fov.root);
     }
 
@@ -120,7 +127,8 @@ export class TimePanel {
         const last = steps - 1, allowed = (step) => clamp(Math.round(step), 0, last);
         this.#steps = steps;
         this.step = slider("Step", { low: 0, high: last, step: 1, allowed, help: `0 to ${last}` }, (step) => this.#go(step));
-        this.place.replaceChildren(this.step.root, row(button("‹ Before", () => this.#go(allowed(this.#wanted - 1))), button("Next ›", () => this.#go(allowed(this.#wanted + 1)))));
+        const by = (steps) => () => this.#go(allowed(this.#wanted + steps));
+        this.place.replaceChildren(this.step.root, row(button("‹ Before", by(-1)), button("Next ›", by(1))));
     }
 
     #go(step) {

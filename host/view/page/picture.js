@@ -39,7 +39,8 @@ export class Picture {
     place(full_width, full_height) {
         const { width, height } = this.#canvas;
         const s = Math.min(width / full_width, height / full_height);
-        const w = Math.abs(full_width * s - width) < 1 ? width : full_width * s, h = Math.abs(full_height * s - height) < 1 ? height : full_height * s;
+        const whole = (length, most) => (Math.abs(length - most) < 1 ? most : length); // a rounded size is no reason to scale
+        const w = whole(full_width * s, width), h = whole(full_height * s, height);
         return { x: (width - w) / 2, y: (height - h) / 2, width: w, height: h };
     }
 

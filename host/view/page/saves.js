@@ -1,5 +1,5 @@
 // Saving: stills, turntables, scenes and transfer functions are rendered by the server at their own size and samples, and then downloaded.
-import { button, checkbox, choice, element, number_field, row, section, segments } from "./controls.js";
+import { button, checkbox, choice, element, file_input, number_field, row, section, segments } from "./controls.js";
 import { draw_overlays } from "./overlays.js";
 import { clamp } from "./vectors.js";
 
@@ -29,12 +29,14 @@ export class SavePanel {
         this.format = choice("Format", [["png", "PNG"], ["jpg", "JPEG"], ["exr", "OpenEXR, all channels"]], change("format"));
         this.overlays = checkbox("With scale bar, orientation, …", change("overlays"), "What is shown over the picture, drawn into it");
         this.jobs = element("ul", { class: "jobs", "aria-label": "Saves" });
-        this.file = element("input", { type: "file", accept: ".json,application/json", class: "hidden", tabindex: "-1", "aria-label": "Scene file", onchange: () => this.#load_scene() });
+        this.file = file_input("Scene file", ".json,application/json", (file) => this.#load_scene(file));
         this.go = button("Save picture", () => this.save(chosen.what), { class: "primary" });
-        this.load_button = button("Load scene…", () => this.file.click());
-        this.root = section("Save", false, this.what.root, row(this.width.root, this.height.root), row(this.samples.root, this.views.root), this.format.root, this.overlays.root,
+        this.load_button = button("Load scene…", () => this.file.open());
+        const save_scene = button("Save scene", () => this.save("scene"), { title: "Everything that makes this picture, for clvr render" });
+        this.root = section("Save", false, this.what.root, row(this.width.root, this.height.root), row(this.samples.root, this.views.root),
+            this.format.root, this.overlays.root,
             row(this.go, button("Use window size", () => this.#as_window(), { title: "Size and samples of the picture on screen" })), this.jobs,
-            row(button("Save scene", () => this.save("scene"), { title: "Everything that makes this picture, for clvr render" }), this.load_button), this.file);
+            row(save_scene, this.load_button), this.file.root);
     }
 
     load() {
@@ -45,8 +47,10 @@ export class SavePanel {
         const chosen = this.#chosen, { state, hello } = this.#app, side = hello.limits?.side ?? 4096;
         const whole = (value, most) => clamp(Math.round(value), 1, most);
         this.wanted = {
-            width: whole(chosen.width ?? state.size.width, side), height: whole(chosen.height ?? state.size.height, side),
-            samples: whole(chosen.samples ?? state.scene.spp, hello.limits?.samples ?? 1 << 20), views: whole(chosen.views, hello.limits?.views ?? 720),
+            width: whole(chosen.width ?? state.size.width, side),
+            height: whole(chosen.height ?? state.size.height, side),
+            samples: whole(chosen.samples ?? state.scene.spp, hello.limits?.samples ?? 1 << 20),
+            views: whole(chosen.views, hello.limits?.views ?? 720),
         };
         for (const key of ["width", "height", "samples", "views"]) this[key].set(this.wanted[key]);
         this.what.set(chosen.what);
@@ -71,7 +75,8 @@ export class SavePanel {
         const asked = { type: "save", what };
         if (picture) Object.assign(asked, { format: what === "still" ? chosen.format : "png", width, height, samples });
         if (what === "turntable") asked.views = views;
-        const overlays = what === "still" && chosen.overlays && chosen.format !== "exr" ? { ...app.overlay_facts(), status: `${samples} samples` } : null;
+        const drawn_over = what === "still" && chosen.overlays && chosen.format !== "exr";
+        const overlays = drawn_over ? { ...app.overlay_facts(), status: `${samples} samples` } : null;
         if (!app.connection.is_open) app.messages.show("Nothing can be saved without a connection to clvr.");
         else this.#expected.push({ what, overlays, id: app.connection.send_with_id(asked) });
     }
@@ -87,19 +92,24 @@ export class SavePanel {
         this.#take(job);
         const shown = this.#rows.get(job.job), before = shown.state;
         shown.state = job.state;
-        shown.words.textContent = `${job.name || job.what}: ${words[job.state] ?? job.state}${job.message ? `, ${job.message}` : ""}`;
+        shown.words.textContent = `${job.name || job.what}: ${words[job.state] ?? job.state}${describe(job)}`;
         shown.bar.hidden = finished.has(job.state);
         shown.bar.value = job.progress ?? 0;
         if (before === job.state) return;
-        const cancel = () => this.#app.connection.send({ type: "cancel", job: job.job });
-        const actions = { waiting: ["Cancel", cancel], running: ["Cancel", cancel], done: ["Download", () => this.#download(job)] }[job.state];
-        shown.actions.replaceChildren(...(actions ? [button(...actions)] : []), ...(finished.has(job.state) ? [button("×", () => shown.root.remove(), { "aria-label": "Remove from the list" })] : []));
+        shown.actions.replaceChildren(...this.#actions(job, shown.root));
         if (job.state === "failed" && this.#own.has(job.job)) this.#app.messages.show(`${job.name || job.what} could not be saved: ${job.message}`);
         if (job.state === "done" && this.#own.has(job.job)) this.#download(job);
     }
 
+    #actions(job, root) {
+        if (!finished.has(job.state)) return [button("Cancel", () => this.#app.connection.send({ type: "cancel", job: job.job }))];
+        const remove = button("×", () => root.remove(), { "aria-label": "Remove from the list" });
+        return job.state === "done" ? [button("Download", () => this.#download(job)), remove] : [remove];
+    }
+
     #add(job) {
-        const parts = { words: element("span", { role: "status" }), bar: element("progress", { max: 1, "aria-label": "Progress" }), actions: element("span", { class: "actions" }) };
+        const bar = element("progress", { max: 1, "aria-label": "Progress" });
+        const parts = { words: element("span", { role: "status" }), bar, actions: element("span", { class: "actions" }) };
         const root = element("li", {}, parts.words, parts.bar, parts.actions);
         this.#rows.set(job.job, { root, ...parts, state: null });
         this.jobs.prepend(root);
@@ -128,10 +138,7 @@ export class SavePanel {
         }
     }
 
-    async #load_scene() {
-        const [file] = this.file.files;
-        this.file.value = "";
-        if (!file) return;
+    async #load_scene(file) {
         try {
             if (file.size > longest_scene) throw new Error(`${file.name} has ${file.size} bytes; a scene has at most ${longest_scene}.`);
             this.#app.load_scene(await file.text());
@@ -140,6 +147,8 @@ export class SavePanel {
         }
     }
 }
+
+const describe = ({ state, samples, message }) => (message ? `, ${message}` : state === "running" && samples > 0 ? `, ${samples} samples` : "");
 
 /// A still with the overlays drawn into it, as large as they would be in a window 800 pixels high.
 async function with_overlays(blob, type, facts) {

@@ -28,7 +28,8 @@ export class SceneState {
     adopt(scene, generation) {
         const own = structuredClone(scene);
         for (const key of of_the_volume) delete own[key];
-        if (this.scene && JSON.stringify({ ...own, width: 0, height: 0 }) !== JSON.stringify({ ...this.scene, width: 0, height: 0 })) this.#remember(null);
+        const but_size = (s) => JSON.stringify({ ...s, width: 0, height: 0 });
+        if (this.scene && but_size(own) !== but_size(this.scene)) this.#remember(null);
         this.scene = own;
         this.generation = Math.max(this.generation, generation);
         this.#tell("server");

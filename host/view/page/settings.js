@@ -58,18 +58,24 @@ export class Settings {
 }
 
 /// The value of "camera.fov" in a scene, and its setter.
-export function get(scene, key) {
+function get(scene, key) {
     return key.split(".").reduce((from, name) => from?.[name], scene);
 }
-export function set(scene, key, value) {
+function set(scene, key, value) {
     const names = key.split("."), last = names.pop();
     names.reduce((from, name) => (from[name] ??= {}), scene)[last] = value;
 }
 
+/// What a slider of a setting needs to know (controls.js).
+export function slider_options(settings, key, { logarithmic = false, unit = "", most = Infinity } = {}) {
+    const { low, high, step } = settings.span(key), usual = settings.default_of(key);
+    const allowed = (value) => settings.allowed(key, value);
+    return { low, high: Math.min(high, most), step, logarithmic, unit, usual, allowed, help: settings.help(key) };
+}
+
 /// A slider of a plain setting of the scene: {root, update(scene)}.
-export function setting_slider(app, label, key, { logarithmic = false, unit = "", most = Infinity } = {}) {
-    const { low, high, step } = app.settings.span(key);
-    const options = { low, high: Math.min(high, most), step, logarithmic, unit, help: app.settings.help(key), usual: app.settings.default_of(key), allowed: (v) => app.settings.allowed(key, v) };
+export function setting_slider(app, label, key, shape = {}) {
+    const options = slider_options(app.settings, key, shape);
     const made = slider(label, options, (value) => app.state.edit(key, (scene) => set(scene, key, value)));
     return { root: made.root, update: (scene) => made.set(get(scene, key) ?? app.settings.default_of(key)) };
 }

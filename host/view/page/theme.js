@@ -17,5 +17,6 @@ export function theme_button(changed) {
         show();
     };
     show();
-    return element("button", { type: "button", class: "tool plain", "aria-label": "Dark or light", title: "Dark or light", onclick: toggle }, icon("theme"));
+    const label = "Dark or light";
+    return element("button", { type: "button", class: "tool plain", "aria-label": label, title: label, onclick: toggle }, icon("theme"));
 }

@@ -3,7 +3,8 @@ import { element } from "./controls.js";
 import { icon } from "./icons.js";
 import { tools } from "./tools.js";
 
-const icon_button = (name, label, title, onclick, more = {}) => element("button", { type: "button", class: "tool", "aria-label": label, title, onclick, ...more }, icon(name));
+const icon_button = (name, label, title, onclick, more = {}) =>
+    element("button", { type: "button", class: "tool", "aria-label": label, title, onclick, ...more }, icon(name));
 
 export class Toolbar {
     #app;
@@ -11,7 +12,8 @@ export class Toolbar {
 
     constructor(app, root, corner) {
         this.#app = app;
-        this.#tools = Object.entries(tools).map(([name, { text, help }]) => [name, icon_button(name, text, `${text}: ${help}`, () => app.choose_tool(name))]);
+        const tool_button = (name, { text, help }) => icon_button(name, text, `${text}: ${help}`, () => app.choose_tool(name));
+        this.#tools = Object.entries(tools).map(([name, tool]) => [name, tool_button(name, tool)]);
         this.undo = icon_button("undo", "Undo", "Undo (Ctrl+Z)", () => app.state.undo());
         this.redo = icon_button("redo", "Redo", "Redo (Shift+Ctrl+Z)", () => app.state.redo());
         const group = (label, ...buttons) => element("div", { class: "group", role: "group", "aria-label": label }, ...buttons);

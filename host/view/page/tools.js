@@ -9,17 +9,20 @@ const turn_per_height = 220; // degrees
 /// The tools, by name: {text, key, help}.
 export const tools = {
     turn: { text: "Turn", help: "Drag turns the volume" },
-    window: { text: "Window and level (W)", help: "Drag up or down shifts the transfer function, left or right widens it; with Ctrl its opacity; with Shift finely" },
+    window: {
+        text: "Window and level (W)",
+        help: "Drag up or down shifts the transfer function, left or right widens it; with Ctrl its opacity; with Shift finely",
+    },
     light: { text: "Light (L)", help: "Drag moves the key light" },
 };
 
 /// A drag of one kind: a tool's name or "pan".
 export function drag_of(app, kind) {
-    const height = app.frame().height;
+    const height = app.frame().height, degrees = (pixels) => (pixels / height) * turn_per_height;
     const kinds = {
-        turn: (dx, dy) => app.move_camera("orbit", (camera) => orbit(camera, (dx / height) * turn_per_height, (dy / height) * turn_per_height, app.trackball)),
+        turn: (dx, dy) => app.move_camera("orbit", (camera) => orbit(camera, degrees(dx), degrees(dy), app.trackball)),
         pan: (dx, dy) => app.move_camera("pan", (camera) => pan(camera, dx / height, dy / height)),
-        light: (dx, dy) => app.turn_light((dx / height) * turn_per_height, (-dy / height) * turn_per_height),
+        light: (dx, dy) => app.turn_light(degrees(dx), degrees(-dy)),
         window: (dx, dy, event) => window_step(app, dx, dy, height, event),
     };
     return { step: kinds[kind] };

@@ -1,7 +1,7 @@
 // Fingers in the picture: one uses the tool (turns, at first), two pan and pinch, a double tap focuses.
 import { drag_at, drag_of, follow } from "./tools.js";
 
-const tap_px = 10, tap_ms = 300, double_tap_px = 40;
+const tap_px = 10, tap_ms = 300, double_tap_px = 40, double_tap_ms = 400;
 
 export function listen_to_touch(app, surface) {
     const fingers = new Map(); // pointerId -> {x, y}
@@ -43,7 +43,8 @@ export function listen_to_touch(app, surface) {
     surface.addEventListener("pointercancel", lift);
 
     function tapped(event) {
-        const second = last_tap && event.timeStamp - last_tap.time < tap_ms + 100 && Math.hypot(event.offsetX - last_tap.x, event.offsetY - last_tap.y) < double_tap_px;
+        const near = (tap) => Math.hypot(event.offsetX - tap.x, event.offsetY - tap.y) < double_tap_px;
+        const second = last_tap && event.timeStamp - last_tap.time < double_tap_ms && near(last_tap);
         last_tap = second ? null : { x: event.offsetX, y: event.offsetY, time: event.timeStamp };
         if (second) app.focus_at(event.offsetX, event.offsetY);
     }

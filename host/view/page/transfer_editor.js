@@ -77,7 +77,8 @@ export class TransferEditor {
         const context = this.#canvas.getContext("2d"), style = getComputedStyle(this.#canvas);
         context.scale(ratio, ratio);
         const colors = Object.fromEntries(["ink", "faint", "accent", "surface", "bars"].map((name) => [name, style.getPropertyValue(`--${name}`)]));
-        draw_plot(context, this.#layout(), { transfer: this.#transfer, volume: this.#volume, selected: this.selected, hovered: this.#hovered, colors });
+        const shown = { transfer: this.#transfer, volume: this.#volume, selected: this.selected, hovered: this.#hovered };
+        draw_plot(context, this.#layout(), { ...shown, colors });
     }
 
     #layout() {
@@ -138,18 +139,19 @@ export class TransferEditor {
     }
 
     #dragged(event, drag) {
-        const layout = this.#layout(), [first, last] = span(drag.transfer);
+        const layout = this.#layout(), [first, last] = span(drag.transfer), width = last - first;
         const by = ((event.offsetX - drag.x) * (this.#view[1] - this.#view[0])) / (layout.right - layout.left);
-        const least = (last - first) * 0.01;
+        const stretch = (to, around) => {
+            if (width > 0) this.#host.edit("transfer.stretch", stretched(drag.transfer, Math.max(0.01, to / width), around));
+        };
         if (drag.part === "knot") {
             const change = { value: layout.value(event.offsetX), opacity: layout.opacity(event.offsetY) };
             this.#host.edit("transfer.knot", with_changed_knot(this.#transfer, drag.index, change));
         } else if (drag.part === "bar") this.#host.edit("transfer.shift", shifted(drag.transfer, by));
-        else if (drag.part === "first" && last > first) this.#host.edit("transfer.stretch", stretched(drag.transfer, Math.max(least, last - first - by) / (last - first), last));
-        else if (drag.part === "last" && last > first) this.#host.edit("transfer.stretch", stretched(drag.transfer, Math.max(least, last - first + by) / (last - first), first));
+        else if (drag.part === "first") stretch(width - by, last);
+        else if (drag.part === "last") stretch(width + by, first);
         else {
-            const pixels = drag.x - event.offsetX, width = drag.view[1] - drag.view[0];
-            this.#view = drag.view.map((v) => v + (pixels * width) / (layout.right - layout.left));
+            this.#view = drag.view.map((v) => v - by);
             this.draw();
         }
     }
@@ -159,7 +161,8 @@ export class TransferEditor {
         this.#drag = null;
         if (!drag) return;
         const layout = this.#layout();
-        if (event.type === "pointerup" && drag.part === "plot" && !drag.moved && drag.y < layout.bar - 4) this.#add(layout.value(event.offsetX), layout.opacity(event.offsetY));
+        const clicked = event.type === "pointerup" && drag.part === "plot" && !drag.moved && drag.y < layout.bar - 4;
+        if (clicked) this.#add(layout.value(event.offsetX), layout.opacity(event.offsetY));
         this.#host.held(false);
     }
 
