@@ -6,8 +6,8 @@ export function element(name, attributes = {}, ...children) {
     for (const [key, value] of Object.entries(attributes)) {
         if (value === undefined || value === null || value === false) continue;
         if (key.startsWith("on")) made.addEventListener(key.slice(2), value);
-        else if (key in made && key !== "list" && key !== "form" && !key.includes("-") && typeof value !== "string") made[key] = value;
-        else made.setAttribute(key === "className" ? "class" : key, value);
+        else if (typeof value !== "string") made[key] = value; // numbers and switches are properties
+        else made.setAttribute(key, value);
     }
     made.append(...children.filter((c) => c !== null && c !== undefined));
     return made;

@@ -68,8 +68,8 @@ function shaded(pixels, rim, light) {
     for (let j = 0; j < pixels; ++j)
         for (let i = 0; i < pixels; ++i) {
             const x = (i + 0.5 - pixels / 2) / radius, y = (pixels / 2 - j - 0.5) / radius, square = x * x + y * y;
-            const normal = [x, y, Math.sqrt(Math.max(0, 1 - square))], o = 4 * (j * pixels + i);
-            const shade = 0.16 + 0.84 * Math.max(0, inner(normal, light));
+            const facing = x * light[0] + y * light[1] + Math.sqrt(Math.max(0, 1 - square)) * light[2], o = 4 * (j * pixels + i);
+            const shade = 0.16 + 0.84 * Math.max(0, facing);
             image.data.fill(255 * Math.sqrt(shade) * 0.95, o, o + 3);
             image.data[o + 3] = 255 * clamp((1 - Math.sqrt(square)) * radius + 0.5, 0, 1);
         }
