@@ -96,12 +96,10 @@ export class ViewPanel {
     }
 }
 
-/// The time step of a 4-D volume; hidden for others. A step is read from the file, so the next waits until the server has answered.
+/// The time step of a 4-D volume; hidden for others. The server reads the newest that was asked for, which may take a while.
 export class TimePanel {
     #app;
     #steps = 0;
-    #wanted = 0;
-    #asked = false;
 
     constructor(app) {
         this.#app = app;
@@ -114,27 +112,17 @@ export class TimePanel {
         this.root.hidden = !(time_steps > 1);
         if (this.root.hidden) return;
         if (this.#steps !== time_steps) this.#build(time_steps);
-        const goes_on = this.#asked && this.#wanted !== time_step;
-        this.#asked = false;
-        if (goes_on) this.#go(this.#wanted);
-        else this.#wanted = time_step;
-        this.step.set(this.#wanted);
+        if (!this.step.root.matches(":active")) this.step.set(time_step); // a dragged slider stays where it is
     }
 
     update() {}
 
     #build(steps) {
         const last = steps - 1, allowed = (step) => clamp(Math.round(step), 0, last);
+        const go = (step) => this.#app.connection.send({ type: "time_step", step });
+        const by = (count) => () => go(allowed(this.#app.volume.time_step + count));
         this.#steps = steps;
-        this.step = slider("Step", { low: 0, high: last, step: 1, allowed, help: `0 to ${last}` }, (step) => this.#go(step));
-        const by = (steps) => () => this.#go(allowed(this.#wanted + steps));
+        this.step = slider("Step", { low: 0, high: last, step: 1, allowed, help: `0 to ${last}` }, go);
         this.place.replaceChildren(this.step.root, row(button("‹ Before", by(-1)), button("Next ›", by(1))));
-    }
-
-    #go(step) {
-        this.#wanted = step;
-        this.step.set(step);
-        if (!this.#asked) this.#app.connection.send({ type: "time_step", step });
-        this.#asked = true;
     }
 }
