@@ -11,8 +11,7 @@ export function listen_to_pointer(app, surface) {
         if (event.pointerType === "touch" || drag || !app.can_control) return;
         const begun = begin(event);
         if (!begun) return;
-        event.preventDefault();
-        surface.focus({ preventScroll: true });
+        if (event.button === 1) event.preventDefault(); // browsers scroll by it
         surface.setPointerCapture(event.pointerId);
         app.state.held(true);
         drag = { move: follow(begun, event.offsetX, event.offsetY), x: event.offsetX, y: event.offsetY, button: event.button, moved: false };

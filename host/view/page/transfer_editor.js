@@ -106,8 +106,6 @@ export class TransferEditor {
 
     #down(event) {
         const layout = this.#layout(), under = this.#under(event, layout);
-        this.#canvas.focus({ preventScroll: true });
-        event.preventDefault();
         if (event.button === 2) {
             if (under.part !== "knot") return;
             this.selected = under.index;
