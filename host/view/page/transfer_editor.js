@@ -4,7 +4,7 @@ import { PlotLayout, draw_plot } from "./transfer_plot.js";
 import { at, shifted, span, stretched, with_changed_knot, with_knot, without_knot } from "./transfer_function.js";
 import { clamp } from "./vectors.js";
 
-const double_click_ms = 500;
+const double_click_ms = 500, scroll_ms = 300;
 
 export class TransferEditor {
     #canvas;
@@ -15,6 +15,7 @@ export class TransferEditor {
     #drag = null;
     #hovered = null;
     #added_at = -Infinity;
+    #scrolled_at = -Infinity;
     selected = 0;
     /// Low opacities get more room.
     spread = false;
@@ -32,6 +33,7 @@ export class TransferEditor {
         on("dblclick", this.#double_click);
         on("keydown", this.#key);
         canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
+        document.addEventListener("scroll", (event) => (this.#scrolled_at = event.timeStamp), { capture: true, passive: true });
         canvas.addEventListener("contextmenu", (event) => event.preventDefault());
         new ResizeObserver(() => this.draw()).observe(canvas);
     }
@@ -178,7 +180,9 @@ export class TransferEditor {
         this.fit();
     }
 
+    /// While the panel scrolls, the wheel belongs to it.
     #wheel(event) {
+        if (event.timeStamp - this.#scrolled_at < scroll_ms) return;
         event.preventDefault();
         this.#zoom(Math.exp(event.deltaY * (event.deltaMode === 1 ? 0.04 : 0.0015)), this.#layout().value(event.offsetX));
     }

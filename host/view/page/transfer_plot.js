@@ -55,7 +55,7 @@ export function draw_plot(context, layout, what) {
 }
 
 function draw_histogram(context, layout, { volume, colors }) {
-    const { low, high, counts } = volume.histogram;
+    const { low, high } = volume.histogram, counts = without_gaps(volume.histogram.counts);
     const per_bin = counts.length / (high - low), most = Math.log1p(Math.max(1, ...counts));
     context.fillStyle = colors.bars;
     for (let x = Math.floor(layout.left); x < layout.right; ++x) {
@@ -66,6 +66,9 @@ function draw_histogram(context, layout, { volume, colors }) {
         if (count > 0) context.fillRect(x, layout.bottom - height, 1, height);
     }
 }
+
+/// Fewer values than bins leave single empty bins, which mean nothing.
+const without_gaps = (counts) => counts.map((c, i) => c || Math.min(counts[i - 1] ?? 0, counts[i + 1] ?? 0));
 
 function draw_curve(context, layout, { transfer, colors }) {
     for (let x = Math.floor(layout.left); x < layout.right; ++x) {
