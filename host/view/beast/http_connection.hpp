@@ -38,6 +38,7 @@ private:
     void read() {
         header_.emplace();
         header_->header_limit(header_bytes);
+        header_->body_limit(boost::none); // upload() has its own
         allow(shared_.settings.header_s);
         http::async_read_header(stream_, buffer_, *header_, [self = this->shared_from_this()](ErrorCode failed, std::size_t) {
             if (!failed) return self->answer();

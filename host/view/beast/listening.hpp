@@ -15,7 +15,7 @@ public:
         settings.socket.empty() ? listen_tcp(io, settings) : listen_socket(io, settings.socket);
     }
 
-    int port() const { return tcp_ ? tcp_->local_endpoint().port() : 0; }
+    int port() const { return port_; }
     void close() {
         ErrorCode ignored;
         if (tcp_) tcp_->close(ignored);
@@ -31,6 +31,7 @@ public:
 private:
     using Tcp = asio::ip::tcp;
     using Local = asio::local::stream_protocol;
+    int port_ = 0;
     std::optional<Tcp::acceptor> tcp_;
     std::optional<SocketFile> file_; // of local_
     std::optional<Local::acceptor> local_;
@@ -56,6 +57,7 @@ private:
         tcp_->set_option(Tcp::acceptor::reuse_address(true), failed), check();
         tcp_->bind(endpoint, failed), check();
         tcp_->listen(asio::socket_base::max_listen_connections, failed), check();
+        port_ = tcp_->local_endpoint().port();
     }
 
     void listen_socket(asio::io_context& io, const std::string& path) {

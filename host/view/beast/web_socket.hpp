@@ -25,6 +25,7 @@ public:
         times.keep_alive_pings = true;
         socket_.set_option(times);
         socket_.read_message_max(largest_message);
+        socket_.auto_fragment(false); // a picture is one frame
         socket_.async_accept(request, [self = this->shared_from_this()](ErrorCode failed) { self->accepted(failed); });
     }
 
