@@ -87,6 +87,10 @@ public:
     /// With `alpha` as for display_pixels.
     DisplayPixels picture(const Background& background, const Tonemap& tonemap, bool alpha);
 
+    /// World position that the picture shows at shares 0..1 of its width and height (row 0 on top): where half of the light is gone, behind
+    /// thin matter its mean depth. Absent where there is next to nothing, and before features were marched.
+    std::optional<Double3> position_at(double x, double y);
+
     /// Composites R G B of this picture, and noisy.R G B beside it, over the background: C + (1 - A) B, with B in background.R/G/B.
     void lay_background(Frame& frame, const Background& background);
 
