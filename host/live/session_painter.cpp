@@ -28,6 +28,7 @@ SessionPainter::SessionPainter(std::vector<Device> devices, std::shared_ptr<cons
 /// A scene that does not depend on defaults, as `clvr render` makes it.
 Scene SessionPainter::resolved(const Scene& scene) {
     validate(scene);
+    const ToneCurve known(tonemap_of(scene)); // or it throws
     Scene s = scene;
     if (!s.transfer) {
         if (!automatic_) automatic_ = automatic_transfer_function(volume_->voxels, stored_histogram(volume_->voxels));
@@ -130,7 +131,8 @@ void SessionPainter::bring(const Scene& scene) {
 bool SessionPainter::is_made(const Scene& scene, int most, const RenderControl& control) const {
     if (!made_ || made_->samples != session_->samples()) return false;
     if (scene.mode == Mode::path && (made_->samples < scene.spp || made_->samples > most)) return false;
-    return made_->rays == scene.feature_samples && (!made_->draft || control.draft) && (made_->lit || !control.light);
+    if (made_->rays != scene.feature_samples || (made_->draft && !control.draft)) return false;
+    return (made_->features || !scene.features) && (made_->lit || !control.light);
 }
 
 /// Adds to what the session has of the scene what its picture is made of. False when cancelled.
@@ -157,7 +159,7 @@ bool SessionPainter::take(Scene scene, int most, RenderControl control) {
 void SessionPainter::filter(const Scene& scene, int most, const RenderControl& control) {
     if (is_made(scene, most, control)) return;
     if (scene.mode == Mode::path) pipeline_->filter(*session_);
-    made_ = Made{session_->samples(), scene.feature_samples, control.draft, control.light};
+    made_ = Made{session_->samples(), scene.feature_samples, scene.features, control.light, control.draft};
 }
 
 std::optional<Painter::Drawn> SessionPainter::draw(const Draw& wanted, const std::atomic<bool>& cancelled) {

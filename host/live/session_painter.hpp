@@ -33,7 +33,7 @@ private:
     /// How the session's picture was made of its samples.
     struct Made {
         int samples, rays;
-        bool draft, lit;
+        bool features, lit, draft;
     };
 
     std::vector<Device> devices_; // those that have not failed

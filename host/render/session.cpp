@@ -355,7 +355,6 @@ bool RenderSession::march(March kind, int rays, bool lit, const RenderControl& c
         const float* plane = &planes[p * numbers_];
         for_pixels(scene_.width, scene_.height, [&](std::uint32_t i, std::size_t at) { channel[at] = plane[i]; });
     }
-    if (host_) host_->filtered.reset(); // it was made of other features
     if (kind == March::features)
         marched_ = names, rays_ = rays, draft_ = lit && workers_[scheduler_.left().front()]->sky->is_draft();
     else

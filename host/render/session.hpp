@@ -74,8 +74,8 @@ public:
 
     /// Samples (or rays of a march) per pixel of the picture.
     int samples() const { return samples_; }
-    /// The picture on its device, with what was asked for so far; valid until the next call. Null where it is kept on the host: on several
-    /// devices, or when it takes more than half of what the device has left.
+    /// The picture on its device, with what was asked for so far; valid until the next call. It is the samples' mean again where a filter
+    /// ran. Null where it is kept on the host: on several devices, or when it takes more than half of what the device has left.
     Film* film();
     /// Where film() is null: what a filter made of frame(), for frame() and picture() until the samples change.
     void set_filtered(Frame filtered);

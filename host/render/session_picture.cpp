@@ -65,8 +65,9 @@ void RenderSession::set_filtered(Frame filtered) {
 }
 
 Film* RenderSession::film() {
+    if (host_) host_->filtered.reset();
     if (!film_) return nullptr;
-    if (film_->denoised) resolved_ = 0; // the samples' mean again
+    if (film_->denoised) resolved_ = 0;
     resolve();
     film_->samples = samples_;
     return film_.get();
