@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 namespace clvr::view {
 
 template <class Stream>
@@ -38,7 +40,7 @@ private:
     void read() {
         header_.emplace();
         header_->header_limit(header_bytes);
-        header_->body_limit(boost::none); // upload() has its own
+        header_->body_limit(std::numeric_limits<std::uint64_t>::max()); // upload() has its own (with none, Beast 1.74 refuses every body)
         allow(shared_.settings.header_s);
         http::async_read_header(stream_, buffer_, *header_, [self = this->shared_from_this()](ErrorCode failed, std::size_t) {
             if (!failed) return self->answer();
