@@ -9,6 +9,7 @@ const char* type_of(const std::string& name) {
     const std::string ending = name.substr(name.rfind('.') + 1);
     if (ending == "html") return "text/html; charset=utf-8";
     if (ending == "css") return "text/css; charset=utf-8";
+    if (ending == "svg") return "image/svg+xml";
     return "text/javascript; charset=utf-8";
 }
 

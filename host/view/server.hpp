@@ -23,7 +23,7 @@ struct SavedFile {
 /// An answer to a request.
 struct Answer {
     int status = 200;
-    std::string json;
+    std::string text; ///< JSON where the status is 200, else words
 };
 
 /// The program behind the server. Called from the network thread, and must not block it. What `said` throws closes that client alone.

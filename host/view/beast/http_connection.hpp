@@ -4,8 +4,6 @@
 #include "host/view/beast/web_socket.hpp"
 #include "host/view/page_file.hpp"
 
-#include <fmt/format.h>
-
 #include <limits>
 
 namespace clvr::view {
@@ -28,6 +26,7 @@ public:
     }
 
 private:
+    static constexpr const char* plain_text = "text/plain; charset=utf-8";
     static constexpr double stall_s = 30;                   // without any byte sent or received
     static constexpr std::uint32_t header_bytes = 32 << 10; // proxies add cookies
     Stream stream_;
@@ -127,8 +126,9 @@ private:
         parser->get().body().close();
         beast::get_lowest_layer(stream_).expires_never(); // while it is looked at
         shared_.handler->uploaded(place, name, [self = this->shared_from_this()](const Answer& answer) {
-            asio::post(self->shared_.io,
-                       [self, answer] { self->say(static_cast<http::status>(answer.status), answer.json, "application/json"); });
+            asio::post(self->shared_.io, [self, answer] {
+                self->say(static_cast<http::status>(answer.status), answer.text, answer.status == 200 ? "application/json" : plain_text);
+            });
         });
     }
 
@@ -151,7 +151,7 @@ private:
         send(std::move(response));
     }
 
-    void say(http::status status) { say(status, fmt::format("{}\n", static_cast<int>(status)), "text/plain"); }
+    void say(http::status status) { say(status, words_of(status), plain_text); }
 
     template <class Body>
     struct Sent {

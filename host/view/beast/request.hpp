@@ -44,6 +44,32 @@ inline bool is_malformed(ErrorCode failed) {
            failed != http::error::partial_message;
 }
 
+/// A refusal for people.
+inline std::string words_of(http::status status) {
+    switch (status) {
+    case http::status::unauthorized:
+        return "The token is missing, or is another viewer's.";
+    case http::status::forbidden:
+        return "The viewer is not to be used under this address, or from this page. Start it with --base-url to allow another one.";
+    case http::status::not_found:
+        return "There is no such file.";
+    case http::status::method_not_allowed:
+        return "That cannot be done with this address.";
+    case http::status::conflict:
+        return "Another image is on its way, or nobody controls the view.";
+    case http::status::length_required:
+        return "The length of the upload is missing.";
+    case http::status::payload_too_large:
+        return "That is too large.";
+    case http::status::service_unavailable:
+        return "As many windows as there may be are open already. Close one.";
+    case http::status::insufficient_storage:
+        return "There is no room for the upload.";
+    default:
+        return text_of(http::obsolete_reason(status));
+    }
+}
+
 template <class Parser>
 bool has_body(const Parser& parser) {
     return parser.chunked() || parser.content_length().value_or(0) > 0;
