@@ -8,6 +8,7 @@ namespace clvr {
 void add_devices_command(CLI::App& app);    // devices.cpp
 void add_info_command(CLI::App& app);       // info.cpp
 void add_render_command(CLI::App& app);     // render.cpp
+void add_view_command(CLI::App& app);       // view.cpp
 void add_denoise_command(CLI::App& app);    // denoise.cpp
 void add_pairs_command(CLI::App& app);      // pairs.cpp
 void add_compare_command(CLI::App& app);    // compare.cpp

@@ -41,6 +41,7 @@ void add_program(CLI::App& app) {
     app.require_subcommand(0, 1); // none: main prints the help
     add_shared_options(app);
     add_render_command(app);
+    add_view_command(app);
     add_info_command(app);
     add_denoise_command(app);
     add_compare_command(app);
@@ -57,6 +58,7 @@ void add_program(CLI::App& app) {
     app.footer("Examples:\n"
                "  clvr scan.nii.gz                      # writes scan.png beside it\n"
                "  clvr render scans/ -o knee.png --denoise --spp 4\n"
+               "  clvr view scan.nii.gz                 # turn it in a browser\n"
                "  clvr info scan.nii.gz\n"
                "  clvr render --help                    # all options of a command\n"
                "Exit codes:\n"

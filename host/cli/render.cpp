@@ -4,6 +4,7 @@
 #include "host/cli/open_volume.hpp"
 #include "host/cli/picture_outputs.hpp"
 #include "host/cli/progress_bar.hpp"
+#include "host/cli/provenance.hpp"
 #include "host/cli/render_options.hpp"
 #include "host/io/file_roles.hpp"
 #include "host/io/model/model_file.hpp"
@@ -14,8 +15,6 @@
 #include "host/render/pipeline.hpp"
 #include "host/render/session.hpp"
 #include "runtime/system/atomic_file.hpp"
-#include "runtime/system/embedded.hpp"
-#include "runtime/system/hashes.hpp"
 #include "runtime/system/signals.hpp"
 
 #include <fmt/format.h>
@@ -32,26 +31,6 @@ namespace {
 
 void print_presets() {
     for (const auto& p : transfer_presets()) fmt::print("{:<16} {}\n", p.name, p.description);
-}
-
-/// One value that changes with any kernel file.
-std::string kernels_sha256() {
-    std::string all;
-    for (const auto& [path, text] : embedded_kernels()) all += path + '\n' + text;
-    return sha256_hex(all);
-}
-
-/// Everything that a frame's file says of its making.
-void add_provenance(Frame& frame, const Scene& scene, const std::vector<Device>& devices) {
-    std::string names;
-    for (const Device& d : devices)
-        names += (names.empty() ? "" : " + ") + d.facts().name + " (" + d.facts().platform + " " + d.facts().driver_version + ")";
-    frame.attributes["clvr.version"] = CLVR_VERSION;
-    frame.attributes["clvr.volume.sha256"] = scene.volume_sha256;
-    frame.attributes["clvr.scene"] = to_json(scene);
-    frame.attributes["clvr.seed"] = std::to_string(scene.seed);
-    frame.attributes["clvr.device"] = names;
-    frame.attributes["clvr.kernels.sha256"] = kernels_sha256();
 }
 
 /// Renders one view and writes it to all outputs. Returns the samples reached.
@@ -81,7 +60,7 @@ int render_view(RenderSession& session, Pipeline& pipeline, const Scene& scene, 
     const Tonemap tonemap{made.tonemap, made.exposure};
     if (any_exr) {
         Frame frame = session.frame(scene.background);
-        add_provenance(frame, made, session.devices());
+        add_provenance(frame, made, to_json(made), session.devices());
         pictures.write(frame, tonemap, outputs);
     } else {
         pictures.write([&](bool alpha) { return session.picture(scene.background, tonemap, alpha); }, outputs);

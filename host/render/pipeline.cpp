@@ -1,9 +1,16 @@
 #include "host/render/pipeline.hpp"
 #include "host/denoise/channels.hpp"
 
+#include <utility>
+
 namespace clvr {
 
 void Pipeline::run(RenderSession& session, const Scene& scene, RenderControl control) {
+    take(session, scene, std::move(control));
+    filter(session);
+}
+
+void Pipeline::take(RenderSession& session, const Scene& scene, RenderControl control) {
     Scene wanted = scene;
     wanted.features |= model_.has_value();
     control.light |= model_ && reads_light(*model_);
@@ -11,12 +18,12 @@ void Pipeline::run(RenderSession& session, const Scene& scene, RenderControl con
         std::vector<Device> devices = session.devices();
         denoiser_on(devices.front()).prepare(scene.width, scene.height, scene.spp > 1);
     }
-    take(session, wanted, control);
-    if (model_) denoise(session);
+    clvr::take(session, wanted, control);
 }
 
 /// Where the session keeps the picture on a device, it is denoised there; else on the first device that can.
-void Pipeline::denoise(RenderSession& session) {
+void Pipeline::filter(RenderSession& session) {
+    if (!model_) return;
     if (Film* const film = session.film()) return denoiser_on(film->device()).denoise(*film);
     const Frame noisy = session.frame();
     std::vector<Device> devices = session.devices();

@@ -16,12 +16,15 @@ public:
     /// features are marched where `control.light` says so or the model reads them. Throws as take() and Denoiser do.
     void run(RenderSession& session, const Scene& scene, RenderControl control);
 
+    /// The two halves of run(), for who may want to stop between them.
+    void take(RenderSession& session, const Scene& scene, RenderControl control);
+    void filter(RenderSession& session);
+
 private:
     std::optional<Model> model_;
     std::optional<Denoiser> denoiser_; // on
     std::optional<Device> on_;
 
-    void denoise(RenderSession& session);
     Denoiser& denoiser_on(Device& device);
 };
 

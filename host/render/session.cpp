@@ -1,3 +1,4 @@
+#include "host/render/framing.hpp"
 #include "host/render/params.hpp"
 #include "host/render/pixel_numbers.hpp"
 #include "host/render/session_parts.hpp"
@@ -14,16 +15,7 @@ namespace clvr {
 
 namespace {
 
-constexpr double framing_opacity = 0.02; // what is fainter does not count for the camera's framing
 const std::atomic<bool> never{false};
-
-std::vector<Double3> outline_of(const Classified& c, const Scene& scene) {
-    std::vector<float> clear = c.majorants;
-    for (float& m : clear)
-        if (m <= framing_opacity) m = 0;
-    return visible_outline(c.voxels->geometry, *c.grid, clear, visible_box(*c.voxels, *c.grid, c.table, framing_opacity),
-                           clip_box_index(scene, *c.voxels));
-}
 
 /// Throws Error{host_memory} when the picture's own buffers would not fit into what the host has left: the kernel would end the process
 /// instead.
@@ -78,7 +70,7 @@ void RenderSession::set_appearance(const Appearance& appearance) {
     if (std::none_of(classified_.majorants.begin(), classified_.majorants.end(), [](float m) { return m > 0; }))
         warnings_.push_back("nothing is visible: the transfer function gives every voxel the opacity 0; try another --tf, or `clvr info` "
                             "for the range of the values");
-    outline_ = outline_of(classified_, scene_);
+    outline_ = framing_outline(classified_, scene_);
     for (const std::size_t k : scheduler_.left()) workers_[k]->marching.reset(), workers_[k]->sky.reset();
     std::vector<std::size_t> done; // of the devices, in this call
     scheduler_.each([&](std::size_t k) {

@@ -74,8 +74,8 @@ public:
 
     /// Samples (or rays of a march) per pixel of the picture.
     int samples() const { return samples_; }
-    /// The picture on its device, with what was asked for so far; valid until the next call. Null where it is kept on the host: on several
-    /// devices, or when it takes more than half of what the device has left.
+    /// The picture on its device, with what was asked for so far; valid until the next call. It is the samples' mean again where a filter
+    /// ran. Null where it is kept on the host: on several devices, or when it takes more than half of what the device has left.
     Film* film();
     /// Where film() is null: what a filter made of frame(), for frame() and picture() until the samples change.
     void set_filtered(Frame filtered);
@@ -86,6 +86,10 @@ public:
     /// The same picture over the background as a display shows it. From the device come 4 bytes a pixel, where the picture is kept there.
     /// With `alpha` as for display_pixels.
     DisplayPixels picture(const Background& background, const Tonemap& tonemap, bool alpha);
+
+    /// World position that the picture shows at shares 0..1 of its width and height (row 0 on top): where half of the light is gone, behind
+    /// thin matter its mean depth. Absent where there is next to nothing, and before features were marched.
+    std::optional<Double3> position_at(double x, double y);
 
     /// Composites R G B of this picture, and noisy.R G B beside it, over the background: C + (1 - A) B, with B in background.R/G/B.
     void lay_background(Frame& frame, const Background& background);

@@ -2,6 +2,7 @@
 #include "host/render/pixel_numbers.hpp"
 #include "host/render/session_parts.hpp"
 #include "host/render/two_floats.hpp"
+#include "host/render/view.hpp"
 #include "runtime/error.hpp"
 
 #include <algorithm>
@@ -64,8 +65,9 @@ void RenderSession::set_filtered(Frame filtered) {
 }
 
 Film* RenderSession::film() {
+    if (host_) host_->filtered.reset();
     if (!film_) return nullptr;
-    if (film_->denoised) resolved_ = 0; // the samples' mean again
+    if (film_->denoised) resolved_ = 0;
     resolve();
     film_->samples = samples_;
     return film_.get();
@@ -112,6 +114,24 @@ DisplayPixels RenderSession::picture(const Background& background, const Tonemap
         behind.picture = &behind_;
     }
     return display_->show(*film_, behind, tonemap, alpha);
+}
+
+std::optional<Double3> RenderSession::position_at(double x, double y) {
+    if (marched_.empty()) return std::nullopt;
+    const int width = scene_.width, height = scene_.height;
+    const auto pixel = [](double share, int side) { return std::clamp(static_cast<int>(share * side), 0, side - 1); };
+    const int column = pixel(x, width), row = pixel(y, height);
+    const std::size_t at = static_cast<std::size_t>(row) * width + column;
+    const auto value = [&](const std::string& channel) {
+        if (!film_) return host_->channels.at(channel)[at];
+        return film_->device().download<float>(film_->planes(), 1, film_->find(channel) * film_->pixels() + at).front();
+    };
+    if (value("opacity.A") < 1.0f / 256) return std::nullopt;
+    const float half = value("depth.half"), depth = half < 1 ? half : value("depth.Z");
+    const double t = params_.depth_near + depth / params_.depth_scale;
+    const View view = resolve_view(scene_, outline_, steady_);
+    const Double3 aside = view.right * (2 * (column + 0.5) / width - 1) + view.up * (1 - 2 * (row + 0.5) / height);
+    return view.orthographic ? view.eye + aside + view.forward * t : view.eye + unit(view.forward + aside) * t;
 }
 
 /// The environment behind the pixels [count], float4 each.

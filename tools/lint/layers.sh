@@ -29,6 +29,7 @@ only host/appearance runtime/ host/volume/ host/frame/ host/appearance/ kernels/
 only host/phantom runtime/ host/volume/ host/phantom/ kernels/shared/
 only host/frame runtime/ host/frame/
 only host/render runtime/ host/volume/ host/appearance/ host/frame/ host/denoise/ host/render/ kernels/shared/
+only host/live runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/denoise/ host/live/
 only host/denoise runtime/ host/frame/ host/denoise/ kernels/shared/
 only host/io runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/denoise/ host/io/ kernels/shared/
 only host/pairs runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/io/ host/pairs/

@@ -23,15 +23,22 @@ Frame exr_outline(const std::string& path);
 /// on. Throws Error{input, usage}.
 std::vector<unsigned char> encode_png(const Frame& frame, const Tonemap& tonemap);
 void write_png(const Frame& frame, const Tonemap& tonemap, const std::string& path);
+/// How much time a PNG may take to become small: quick is for pictures that are looked at once.
+enum class PngEffort { usual, quick };
 /// The same of pixels that are there already.
-std::vector<unsigned char> encode_png(const DisplayPixels& pixels);
+std::vector<unsigned char> encode_png(const DisplayPixels& pixels, PngEffort effort = PngEffort::usual);
 void write_png(const DisplayPixels& pixels, const std::string& path);
 /// Any PNG as linear light 0..1 of its 8-bit sRGB (premultiplied; A where the file has an alpha). Throws Error{input}.
 Frame read_png(const std::string& path);
 
 /// The same as JPEG over black, quality 95, every colour at full size. Throws Error{input, usage}; also for more than 65500 pixels a side.
 void write_jpeg(const Frame& frame, const Tonemap& tonemap, const std::string& path);
-/// The same of pixels of three components.
+struct JpegQuality {
+    int percent = 95;
+    bool full_colour = true; ///< else the colours have half the width and height
+};
+/// Pixels of three components, at most 65500 a side.
+std::vector<unsigned char> encode_jpeg(const DisplayPixels& pixels, const JpegQuality& quality = {});
 void write_jpeg(const DisplayPixels& pixels, const std::string& path);
 /// Any JPEG of grey or RGB as linear light 0..1 of its sRGB. Throws Error{input}.
 Frame read_jpeg(const std::string& path);

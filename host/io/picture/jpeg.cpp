@@ -11,7 +11,7 @@ namespace clvr {
 
 namespace {
 
-constexpr int quality = 95, largest_side = 65500; // libjpeg's JPEG_MAX_DIMENSION
+constexpr int largest_side = 65500; // libjpeg's JPEG_MAX_DIMENSION
 constexpr std::size_t largest_jpeg_pixels = std::size_t{1} << 28;
 
 using Handle = std::unique_ptr<void, int (*)(tjhandle)>;
@@ -39,16 +39,21 @@ void write_jpeg(const Frame& frame, const Tonemap& tonemap, const std::string& p
     }
 }
 
-void write_jpeg(const DisplayPixels& pixels, const std::string& path) {
-    refuse_large(pixels.width, pixels.height, path);
+std::vector<unsigned char> encode_jpeg(const DisplayPixels& pixels, const JpegQuality& quality) {
     const Handle encoder = checked(tjInitCompress());
     unsigned char* bytes = nullptr;
     unsigned long size = 0;
-    const int failed = tjCompress2(encoder.get(), pixels.values.data(), pixels.width, 0, pixels.height, TJPF_RGB, &bytes, &size, TJSAMP_444,
-                                   quality, TJFLAG_ACCURATEDCT);
+    const int failed = tjCompress2(encoder.get(), pixels.values.data(), pixels.width, 0, pixels.height, TJPF_RGB, &bytes, &size,
+                                   quality.full_colour ? TJSAMP_444 : TJSAMP_420, quality.percent, TJFLAG_ACCURATEDCT);
     const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owner(bytes, tjFree);
-    if (failed != 0) throw Error(ErrorKind::internal, fmt::format("libjpeg-turbo cannot encode: {}", tjGetErrorStr2(encoder.get())), path);
-    write_atomically(path, bytes, size);
+    if (failed != 0) throw Error(ErrorKind::internal, fmt::format("libjpeg-turbo cannot encode: {}", tjGetErrorStr2(encoder.get())));
+    return {bytes, bytes + size};
+}
+
+void write_jpeg(const DisplayPixels& pixels, const std::string& path) {
+    refuse_large(pixels.width, pixels.height, path);
+    const std::vector<unsigned char> encoded = encode_jpeg(pixels);
+    write_atomically(path, encoded.data(), encoded.size());
 }
 
 Frame read_jpeg(const std::string& path) {

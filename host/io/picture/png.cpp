@@ -10,12 +10,13 @@
 
 namespace clvr {
 
-std::vector<unsigned char> encode_png(const DisplayPixels& pixels) {
+std::vector<unsigned char> encode_png(const DisplayPixels& pixels, PngEffort effort) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     image.width = static_cast<png_uint_32>(pixels.width);
     image.height = static_cast<png_uint_32>(pixels.height);
     image.format = pixels.components == 3 ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+    if (effort == PngEffort::quick) image.flags |= PNG_IMAGE_FLAG_FAST;
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
     std::vector<unsigned char> encoded(size);
     if (!png_image_write_to_memory(&image, encoded.data(), &size, 0, pixels.values.data(), 0, nullptr))
