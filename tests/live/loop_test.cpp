@@ -144,13 +144,15 @@ TEST(Loop, APauseLosesNoSamples) {
     FakeLoop live;
     live.loop.post(scene_at(0, 4), 1);
     live.expect({"1 m 1"});
-    live.painter.hold = true;
     live.settle();
+    live.expect({"1 m 1", "1 a 1", "1 a 2", "1 s 4"});
+    live.painter.hold = true;
+    live.loop.post(scene_at(0, 16), 2); // more of them
     ASSERT_TRUE(live.draws());
+    live.loop.pause(true);
+    EXPECT_TRUE(eventually([&] { return live.painter.cancelled == 1; }));
     live.painter.hold = false;
     live.expect({"1 m 1", "1 a 1", "1 a 2", "1 s 4"});
-    live.loop.pause(true);
-    live.loop.post(scene_at(0, 16), 2);
     live.loop.pause(false);
     live.expect({"1 m 1", "1 a 1", "1 a 2", "1 s 4", "2 a 4", "2 a 8", "2 s 16"});
 }
