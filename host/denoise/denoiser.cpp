@@ -82,10 +82,18 @@ struct Denoiser::State {
     BatchShape shape;
     Kernel finish;
     std::size_t repaired = 0;
+    const std::atomic<bool>* cancelled = nullptr; // of the picture that is filtered
 
     State(const Device& d, const Model& m)
         : device(d), model(m), plan(m, false), tiling(m), light(d, m), finish(device.kernel("denoise/finish")) {
         parameters = device.upload(m.flat(), "model");
+    }
+
+    /// Waits, where the picture can be cancelled, for what was launched, and throws when it is.
+    void stop_if_cancelled() {
+        if (!cancelled) return;
+        device.finish();
+        if (*cancelled) throw Error(ErrorKind::interrupted, "the picture was cancelled");
     }
 
     /// Bytes that a tile may take beside a film of `held` bytes.
@@ -160,7 +168,8 @@ struct Denoiser::State {
                                    std::min(tile_size.height, wanted.y + wanted.height - y)},
                     outer = tiling.outer(inner, part.width, part.height);
                 NeuralGrid& g = grid_of(tile_shape(outer, show), tile_shape(largest, show));
-                g.picture(film.planes(), film.width(), film.height(), params, outer.x - part.region.x, outer.y - part.region.y, channels);
+                g.picture(film.planes(), film.width(), film.height(), params, outer.x - part.region.x, outer.y - part.region.y, channels,
+                          [&] { stop_if_cancelled(); });
                 const shared::int4 from{inner.x - outer.x, inner.y - outer.y, inner.width, inner.height};
                 const auto to = static_cast<cl_uint>((inner.y - part.region.y) * film.width() + inner.x - part.region.x);
                 device.launch(finish, {static_cast<std::size_t>(inner.width), static_cast<std::size_t>(inner.height)}, finish.group(64), {},
@@ -201,6 +210,7 @@ struct Denoiser::State {
                               sums, film.width(), low, rows, y - low, count, blended);
             }
             copy(device, blended, film.planes(), film.pixels() * 4, 0, (to + c) * film.pixels() * 4);
+            stop_if_cancelled();
         }
         device.finish(); // before the buffers go
     }
@@ -294,7 +304,7 @@ Frame outline_of(const Film& film) {
 
 } // namespace
 
-void Denoiser::denoise(Film& film) {
+void Denoiser::denoise(Film& film, const std::atomic<bool>* cancelled) {
     State& s = *state_;
     if (!film.is_on(s.device)) throw Error(ErrorKind::internal, "the picture lies on another device", "Denoiser");
     s.plan.check(outline_of(film));
@@ -303,12 +313,14 @@ void Denoiser::denoise(Film& film) {
     s.light.begin(whole.width, whole.height, true);
     s.light.add(film, whole);
     s.light.make_known(film, 0, 0);
+    film.denoised = true; // also when it is cancelled: R G B A are not the samples' any more
+    s.cancelled = cancelled;
     s.run(film, {whole.width, whole.height, whole, whole}, s.light.exposure(), true, false, {});
-    film.denoised = true;
 }
 
 Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     State& s = *state_;
+    s.cancelled = nullptr;
     s.plan.check(frame);
     prepare(frame.width, frame.height, has_variances(frame), view.levels);
     s.repaired = 0;

@@ -302,7 +302,7 @@ void NeuralGrid::guide_band(int shift, int first, int end, int images) {
 }
 
 void NeuralGrid::picture(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
-                         const Buffer& channels) {
+                         const Buffer& channels, const std::function<void()>& between) {
     // All bands have one height, so that their borders stay zeros: the last one begins earlier than it needs to.
     for (int done = 0; done < params_.height;) {
         const int shift = std::min(std::max(0, done - halo_), params_.height - band_.height);
@@ -311,8 +311,10 @@ void NeuralGrid::picture(const Buffer& source, int source_width, int source_heig
         assemble_band(shift, source, source_width, source_height, params, x, y, 0, 0, channels);
         guide_band(shift, done - shift, end, 1);
         done = shift + end;
+        between();
     }
     grids(1);
+    between();
 }
 
 void NeuralGrid::forward(int images) {

@@ -4,6 +4,7 @@
 #include "host/denoise/model.hpp"
 #include "runtime/opencl/device.hpp"
 
+#include <functional>
 #include <vector>
 
 namespace clvr {
@@ -83,9 +84,9 @@ public:
     /// From the assembled images to result().
     void forward(int images);
     /// A batch of one image, from its pixels to result(), band by band through the network: assemble() and forward(), the same bits in less
-    /// memory.
+    /// memory. `between` is called between its steps; it may throw.
     void picture(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
-                 const Buffer& channels);
+                 const Buffer& channels, const std::function<void()>& between);
 
     /// Memory of a batch, and its sum [bytes].
     static std::vector<ScratchBuffer> scratch(const Device& device, const Model& model, const BatchShape& shape);
