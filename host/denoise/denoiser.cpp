@@ -39,6 +39,10 @@ struct Tiling {
         r.height = std::min(height, inner.y + inner.height + halo) - r.y;
         return r;
     }
+    /// No tile that gives a part of this size is larger.
+    Region largest_outer(const Region& inner, int width, int height) const {
+        return {0, 0, std::min(width, inner.width + 2 * halo + align), std::min(height, inner.height + 2 * halo + align)};
+    }
 };
 
 /// Which part of a picture a film holds, and which part of that is wanted.
@@ -78,16 +82,24 @@ struct Denoiser::State {
     BatchShape shape;
     Kernel finish;
     std::size_t repaired = 0;
+    const std::atomic<bool>* cancelled = nullptr; // of the picture that is filtered
 
     State(const Device& d, const Model& m)
         : device(d), model(m), plan(m, false), tiling(m), light(d, m), finish(device.kernel("denoise/finish")) {
         parameters = device.upload(m.flat(), "model");
     }
 
-    /// Bytes that a tile may take beside a film of `held` bytes: 1080p stays below 400 MB in all.
+    /// Waits, where the picture can be cancelled, for what was launched, and throws when it is.
+    void stop_if_cancelled() {
+        if (!cancelled) return;
+        device.finish();
+        if (*cancelled) throw Error(ErrorKind::interrupted, "the picture was cancelled");
+    }
+
+    /// Bytes that a tile may take beside a film of `held` bytes.
     std::size_t tile_budget(std::size_t held) const {
-        const std::size_t kept = grid ? tile_bytes({0, 0, shape.width, shape.height}, shape.show) : 0,
-                          most = static_cast<std::size_t>(device.tunable(tunables::denoise_mib)) << 20;
+        const std::size_t kept = grid ? grid->held_bytes() : 0, most = static_cast<std::size_t>(device.tunable(tunables::denoise_mib))
+                                                                       << 20;
         return std::min(std::max(most > held ? most - held : 0, most / 2), (device.free_bytes() + kept) / 8 * 7);
     }
 
@@ -97,9 +109,8 @@ struct Denoiser::State {
         return std::min(std::max(half, least), device.free_bytes() / 16 * 7);
     }
 
-    std::size_t tile_bytes(const Region& outer, bool show) const {
-        return NeuralGrid::bytes(device, model, {outer.width, outer.height, 1, show});
-    }
+    std::size_t tile_bytes(const Region& outer, bool show) const { return NeuralGrid::bytes(device, model, tile_shape(outer, show)); }
+    static BatchShape tile_shape(const Region& outer, bool show) { return {outer.width, outer.height, 1, show, false, true}; }
 
     /// Cuts the picture's rows, then its columns, into ever more parts of at least `align` pixels, until one of that size fits.
     template <class Fits>
@@ -113,18 +124,17 @@ struct Denoiser::State {
     /// Size of the parts of `wanted` that a tile gives, within `bytes`; the picture is width x height.
     Region tile(const Region& wanted, int width, int height, bool show, std::size_t bytes) const {
         return part_of(wanted.width, wanted.height, [&](const Region& t) {
-            const Region outer{0, 0, std::min(width, t.width + 2 * tiling.halo + tiling.align),
-                               std::min(height, t.height + 2 * tiling.halo + tiling.align)};
+            const Region outer = tiling.largest_outer(t, width, height);
             return tile_bytes(outer, show) <= bytes &&
                    std::size_t{16} * NeuralGrid::params_of(device, model, outer.width, outer.height).cells <= device.max_alloc_bytes();
         });
     }
 
-    /// A NeuralGrid of the size; the last one's memory is given back first.
-    NeuralGrid& grid_of(const BatchShape& wanted) {
+    /// A NeuralGrid of the size, in the last one's memory or in such for `largest`.
+    NeuralGrid& grid_of(const BatchShape& wanted, const BatchShape& largest) {
         if (!grid || wanted.width != shape.width || wanted.height != shape.height || wanted.show != shape.show) {
-            grid.reset();
-            grid = std::make_unique<NeuralGrid>(device, model, wanted);
+            const std::unique_ptr<NeuralGrid> former = std::move(grid);
+            grid = std::make_unique<NeuralGrid>(device, model, wanted, former.get(), largest);
             grid->set_parameters(parameters);
             shape = wanted;
         }
@@ -150,16 +160,16 @@ struct Denoiser::State {
         const auto size = static_cast<cl_uint>(film.pixels());
         // Blending sums over pixels beside the inner part.
         const Region wanted = with_variance ? grown(part.inner, CLVR_BLEND_RADIUS + 1, part.width, part.height) : part.inner;
-        const Region tile_size = tile(wanted, part.width, part.height, show, tile_budget(film.planes().bytes()));
+        const Region tile_size = tile(wanted, part.width, part.height, show, tile_budget(film.planes().bytes())),
+                     largest = tiling.largest_outer(tile_size, part.width, part.height);
         for (int y = wanted.y; y < wanted.y + wanted.height; y += tile_size.height)
             for (int x = wanted.x; x < wanted.x + wanted.width; x += tile_size.width) {
                 const Region inner{x, y, std::min(tile_size.width, wanted.x + wanted.width - x),
                                    std::min(tile_size.height, wanted.y + wanted.height - y)},
                     outer = tiling.outer(inner, part.width, part.height);
-                NeuralGrid& g = grid_of({outer.width, outer.height, 1, show});
-                g.assemble(film.planes(), film.width(), film.height(), params, outer.x - part.region.x, outer.y - part.region.y, 0, 0,
-                           &channels);
-                g.forward(1);
+                NeuralGrid& g = grid_of(tile_shape(outer, show), tile_shape(largest, show));
+                g.picture(film.planes(), film.width(), film.height(), params, outer.x - part.region.x, outer.y - part.region.y, channels,
+                          [&] { stop_if_cancelled(); });
                 const shared::int4 from{inner.x - outer.x, inner.y - outer.y, inner.width, inner.height};
                 const auto to = static_cast<cl_uint>((inner.y - part.region.y) * film.width() + inner.x - part.region.x);
                 device.launch(finish, {static_cast<std::size_t>(inner.width), static_cast<std::size_t>(inner.height)}, finish.group(64), {},
@@ -200,6 +210,7 @@ struct Denoiser::State {
                               sums, film.width(), low, rows, y - low, count, blended);
             }
             copy(device, blended, film.planes(), film.pixels() * 4, 0, (to + c) * film.pixels() * 4);
+            stop_if_cancelled();
         }
         device.finish(); // before the buffers go
     }
@@ -293,7 +304,7 @@ Frame outline_of(const Film& film) {
 
 } // namespace
 
-void Denoiser::denoise(Film& film) {
+void Denoiser::denoise(Film& film, const std::atomic<bool>* cancelled) {
     State& s = *state_;
     if (!film.is_on(s.device)) throw Error(ErrorKind::internal, "the picture lies on another device", "Denoiser");
     s.plan.check(outline_of(film));
@@ -302,12 +313,14 @@ void Denoiser::denoise(Film& film) {
     s.light.begin(whole.width, whole.height, true);
     s.light.add(film, whole);
     s.light.make_known(film, 0, 0);
+    film.denoised = true; // also when it is cancelled: R G B A are not the samples' any more
+    s.cancelled = cancelled;
     s.run(film, {whole.width, whole.height, whole, whole}, s.light.exposure(), true, false, {});
-    film.denoised = true;
 }
 
 Frame Denoiser::denoise(const Frame& frame, const DenoiserView& view) {
     State& s = *state_;
+    s.cancelled = nullptr;
     s.plan.check(frame);
     prepare(frame.width, frame.height, has_variances(frame), view.levels);
     s.repaired = 0;

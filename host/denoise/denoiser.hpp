@@ -5,6 +5,7 @@
 #include "host/frame/frame.hpp"
 #include "runtime/opencl/device.hpp"
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -31,8 +32,9 @@ public:
     Frame denoise(const Frame& frame, const DenoiserView& show = {});
 
     /// A film on this device, in place: R G B A become the result, the input stays in noisy.R G B A. The same bits as for the frame that
-    /// the film holds; other channels stay. The film holds no value that is not finite and lies over nothing.
-    void denoise(Film& film);
+    /// the film holds; other channels stay. The film holds no value that is not finite and lies over nothing. Throws Error{interrupted}
+    /// when `cancelled`, which it looks at now and then, is true: R G B A then hold anything, and the input has to be made again.
+    void denoise(Film& film, const std::atomic<bool>* cancelled = nullptr);
 
     /// Has the programs built that a picture takes, on a thread of their own, while its channels are made or gathered. `variances`: it has
     /// them.

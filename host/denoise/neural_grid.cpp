@@ -54,6 +54,17 @@ Defines slice_defines(const Device& device, const Model& model, bool show) {
 
 int round_up(int n, int multiple) { return (n + multiple - 1) / multiple * multiple; }
 
+/// Rows around a band that its guides depend on: the taps of two convolutions.
+int band_halo(const Model& model) { return 2 * (model.kernel / 2); }
+
+/// Rows of each band that goes through the network: as few bands as the tunable asks for, and no larger than as many need.
+int band_rows(const Device& device, const Model& model, const BatchShape& b) {
+    if (!b.bands) return b.height;
+    const int shared = 2 * band_halo(model), most = std::max(device.tunable(tunables::band_pixels) / b.width, 1),
+              bands = std::max(1, (b.height - shared + most - 1) / most);
+    return (b.height + shared * (bands - 1) + bands - 1) / bands;
+}
+
 } // namespace
 
 int channels_at_once(int channels, int most) {
@@ -99,13 +110,12 @@ void Convolution::set_parameters(Device& device, const Buffer& parameters) {
     }
 }
 
-Range Convolution::range(const shared::DenoiseParams& shape, int images) const {
-    return {static_cast<std::size_t>((shape.width + step_ - 1) / step_), static_cast<std::size_t>(shape.height),
-            static_cast<std::size_t>(images)};
+Range Convolution::range(int width, int rows, int images) const {
+    return {static_cast<std::size_t>((width + step_ - 1) / step_), static_cast<std::size_t>(rows), static_cast<std::size_t>(images)};
 }
 
-Work Convolution::work(const shared::DenoiseParams& shape, int images) const {
-    const double pixels = static_cast<double>(shape.width) * shape.height * images;
+Work Convolution::work(int width, int rows, int images) const {
+    const double pixels = static_cast<double>(width) * rows * images;
     return {pixels * 4 * (in_ + out_), pixels * 2 * in_ * out_ * size_ * size_};
 }
 
@@ -137,19 +147,22 @@ shared::DenoiseParams NeuralGrid::params_of(const Device& device, const Model& m
 }
 
 std::vector<ScratchBuffer> NeuralGrid::scratch(const Device& device, const Model& model, const BatchShape& b) {
-    const shared::DenoiseParams p = params_of(device, model, b.width, b.height);
+    const shared::DenoiseParams p = params_of(device, model, b.width, b.height),
+                                band = params_of(device, model, b.width, band_rows(device, model, b));
     const std::size_t images = static_cast<std::size_t>(b.images), pixels = images * static_cast<std::size_t>(b.width) * b.height;
-    const auto planes = [&](int channels) { return images * channels * p.plane * 4 + 64; }; // rows are read 16 pixels at once
-    return {{"network input", planes(static_cast<int>(model.channels.size())), true},
-            {"hidden layer", planes(model.hidden), true},
+    const auto planes_of = [&](const shared::DenoiseParams& q, int channels) {
+        return images * channels * q.plane * 4 + 64; // rows are read 16 pixels at once
+    };
+    const auto planes = [&](int channels) { return planes_of(p, channels); };
+    return {{"network input", planes_of(band, static_cast<int>(model.channels.size())), true},
+            {"hidden layer", planes_of(band, model.hidden), true},
             {"guides", planes(model.outputs()), true},
             {"denoised picture", planes(3 + (b.show ? 3 * p.levels : 0)), true},
             {"target", planes(b.target ? 3 : 0), true},
             {"known light", planes(model.control_variate ? 3 : 0), true},
             {"colours to splat", pixels * 16, false},
             {"albedo", pixels * 16, false},
-            // Slicing reads cells in pairs. The last pair's second cell has the weight 0, but no NaN may lie there.
-            {"bilateral grids", std::size_t{16} * (p.cells * images + 1), true}};
+            {"bilateral grids", std::size_t{16} * (p.cells * images + 1), false}};
 }
 
 std::size_t NeuralGrid::bytes(const Device& device, const Model& model, const BatchShape& shape) {
@@ -158,9 +171,10 @@ std::size_t NeuralGrid::bytes(const Device& device, const Model& model, const Ba
     return sum;
 }
 
-NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShape& shape)
+NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShape& shape, NeuralGrid* former, const BatchShape& largest)
     : device_(device), levels_(static_cast<int>(model.levels.size())), channels_(static_cast<int>(model.channels.size())), batch_(shape),
-      params_(params_of(device, model, shape.width, shape.height)) {
+      params_(params_of(device, model, shape.width, shape.height)),
+      band_(params_of(device, model, shape.width, band_rows(device, model, shape))), halo_(band_halo(model)) {
     assemble_ = device_.kernel("denoise/assemble", assemble_defines(device_));
     slice_ = device_.kernel("denoise/slice", slice_defines(device_, model, shape.show));
     for (int l = 0; l < levels_; ++l) {
@@ -173,13 +187,32 @@ NeuralGrid::NeuralGrid(const Device& device, const Model& model, const BatchShap
                               false, shape.width);
 
     params_buffer_ = device_.upload(std::vector<shared::DenoiseParams>{params_}, "denoiser settings");
+    band_buffer_ = device_.upload(std::vector<shared::DenoiseParams>{band_}, "settings of a band");
     channel_list_ = device_.upload(ChannelPlan(model, shape.target).channels(), "channel list");
-    const std::vector<ScratchBuffer> wanted = scratch(device_, model, shape);
-    Buffer* const buffers[] = {&input_, &hidden_, &outputs_, &result_, &target_, &known_, &splatted_, &remodulation_, &cells_};
+    const std::vector<ScratchBuffer> wanted = scratch(device_, model, shape), most = scratch(device_, model, largest);
+    const std::vector<Buffer*> buffers = scratch_buffers(),
+                               from = former ? former->scratch_buffers() : std::vector<Buffer*>(buffers.size());
     for (std::size_t k = 0; k < wanted.size(); ++k) {
-        *buffers[k] = device_.buffer(wanted[k].bytes, wanted[k].label);
+        if (from[k]) *buffers[k] = std::move(*from[k]);
+        if (buffers[k]->bytes() < wanted[k].bytes) {
+            *buffers[k] = {}; // given back before more is asked for
+            *buffers[k] = device_.buffer(std::max(wanted[k].bytes, most[k].bytes), wanted[k].label);
+        }
         if (wanted[k].zeros) device_.fill(*buffers[k], 0);
     }
+    // Slicing reads cells in pairs. The last pair's second cell has the weight 0, but no NaN may lie there.
+    const float nothing[4] = {};
+    device_.write(cells_, nothing, sizeof nothing, wanted.back().bytes - sizeof nothing);
+}
+
+std::size_t NeuralGrid::held_bytes() {
+    std::size_t sum = 0;
+    for (const Buffer* buffer : scratch_buffers()) sum += buffer->bytes();
+    return sum;
+}
+
+std::vector<Buffer*> NeuralGrid::scratch_buffers() {
+    return {&input_, &hidden_, &outputs_, &result_, &target_, &known_, &splatted_, &remodulation_, &cells_};
 }
 
 void NeuralGrid::prepare(Device& device, const Model& model, int width, int height, bool show) {
@@ -195,9 +228,11 @@ void NeuralGrid::prepare(Device& device, const Model& model, int width, int heig
 
 int NeuralGrid::pixel_width(const Device& device) { return conv_width(device); }
 
-Range NeuralGrid::pixel_items(int images) const {
+Range NeuralGrid::pixel_items(int images) const { return pixel_items(params_.height, images); }
+
+Range NeuralGrid::pixel_items(int rows, int images) const {
     const int width = pixel_width(device_);
-    return {static_cast<std::size_t>((params_.width + width - 1) / width), static_cast<std::size_t>(params_.height),
+    return {static_cast<std::size_t>((params_.width + width - 1) / width), static_cast<std::size_t>(rows),
             static_cast<std::size_t>(images)};
 }
 
@@ -213,6 +248,11 @@ void NeuralGrid::set_parameters(const Buffer& parameters) {
 
 void NeuralGrid::assemble(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
                           int orientation, int n, const Buffer* channels) {
+    assemble_band(0, source, source_width, source_height, params, x, y, orientation, n, channels ? *channels : channel_list_);
+}
+
+void NeuralGrid::assemble_band(int shift, const Buffer& source, int source_width, int source_height, const shared::SourceParams& params,
+                               int x, int y, int orientation, int n, const Buffer& channels) {
     // The part's pixel (column, row) is the result of quarter turns of (x, y) within width x height, rows upside down first for 4..7
     // (kernels/denoise/README.md, "Training"): an affine map, found from three of its pixels.
     const auto source_pixel = [&](int column, int row) {
@@ -225,13 +265,13 @@ void NeuralGrid::assemble(const Buffer& source, int source_width, int source_hei
         }
         return (y + row) * source_width + x + column;
     };
-    const int first = source_pixel(0, 0);
-    const shared::int4 from{first, source_pixel(1, 0) - first, source_pixel(0, 1) - first, n};
+    const int first = source_pixel(0, shift);
+    const shared::int4 from{first, source_pixel(1, shift) - first, source_pixel(0, shift + 1) - first, n};
     const auto size = static_cast<cl_uint>(source_width) * static_cast<cl_uint>(source_height);
     // Turned images are read down their columns: 16 rows at once find what they share in the first-level cache (10 % on PoCL).
-    device_.launch(assemble_, pixel_items(1), assemble_.group(is_cpu(device_) ? Range{1, 16} : pixel_group()),
-                   {static_cast<double>(params_.width) * params_.height * (8 * channels_ + 64), 0}, params_buffer_, params, source, size,
-                   from, channels ? *channels : channel_list_, input_, splatted_, remodulation_, target_, known_);
+    device_.launch(assemble_, pixel_items(band_.height, 1), assemble_.group(is_cpu(device_) ? Range{1, 16} : pixel_group()),
+                   {static_cast<double>(band_.width) * band_.height * (8 * channels_ + 64), 0}, band_buffer_, params_buffer_, shift, params,
+                   source, size, from, channels, input_, splatted_, remodulation_, target_, known_);
 }
 
 void NeuralGrid::splat(int level, int images, const Buffer& pixels, int first_image, const Buffer& cells, bool sums) {
@@ -253,9 +293,28 @@ void NeuralGrid::slice(int images) {
                    cells_, remodulation_, known_, result_);
 }
 
-void NeuralGrid::guide_network(int images) {
-    to_hidden_.run(device_, params_, images, params_buffer_, input_, hidden_);
-    to_outputs_.run(device_, params_, images, params_buffer_, hidden_, outputs_);
+void NeuralGrid::guide_network(int images) { guide_band(0, 0, band_.height, images); }
+
+/// The band's rows from `first` to before `end`; the picture's row `shift` is its first.
+void NeuralGrid::guide_band(int shift, int first, int end, int images) {
+    to_hidden_.run(device_, band_, images, band_buffer_, input_, hidden_);
+    to_outputs_.run_rows(device_, band_, end - first, images, band_buffer_, hidden_, outputs_, params_buffer_, shift, first, end);
+}
+
+void NeuralGrid::picture(const Buffer& source, int source_width, int source_height, const shared::SourceParams& params, int x, int y,
+                         const Buffer& channels, const std::function<void()>& between) {
+    // All bands have one height, so that their borders stay zeros: the last one begins earlier than it needs to.
+    for (int done = 0; done < params_.height;) {
+        const int shift = std::min(std::max(0, done - halo_), params_.height - band_.height);
+        const bool last = shift + band_.height == params_.height;
+        const int end = last ? band_.height : band_.height - halo_;
+        assemble_band(shift, source, source_width, source_height, params, x, y, 0, 0, channels);
+        guide_band(shift, done - shift, end, 1);
+        done = shift + end;
+        between();
+    }
+    grids(1);
+    between();
 }
 
 void NeuralGrid::forward(int images) {

@@ -68,13 +68,15 @@ inline constexpr Tunable pixel_group{"pixel_group",
                                      {1, 2, 4, 8, 16},
                                      {8, 16, 32, 64}};
 
-/// MiB of a tile of the picture, at most: less where memory is short. 1080p stays below 400 MB in two tiles, which costs 7 % more pixels;
-/// larger tiles are not faster.
-inline constexpr Tunable denoise_mib{"denoise_mib",
-                                     AllowedValues::whole(1, 1 << 20),
-                                     [](const DeviceFacts&, const Tunables&) { return 380; },
-                                     {"denoise a frame"},
-                                     {47, 95, 190, 380},
-                                     {47, 95, 190, 380}};
+/// Pixels of the rows that go through GuideNet at once: its layers are kept for those alone.
+inline constexpr Tunable band_pixels{
+    "band_pixels",       AllowedValues::powers_of_two(1, 1 << 24),      [](const DeviceFacts&, const Tunables&) { return 1 << 19; },
+    {"denoise a frame"}, {1 << 16, 1 << 17, 1 << 18, 1 << 19, 1 << 20}, {1 << 18, 1 << 19, 1 << 20, 1 << 21}};
+
+/// MiB that a picture takes with its film, at most: beyond that it goes through in tiles, as where memory is short. 1080p just fits at
+/// once: 0.7 times the time of 380 MiB, which are four tiles and planes uploaded twice.
+inline constexpr Tunable denoise_mib{
+    "denoise_mib",       AllowedValues::whole(1, 1 << 20), [](const DeviceFacts&, const Tunables&) { return 600; },
+    {"denoise a frame"}, {75, 150, 300, 600, 1200},        {75, 150, 300, 600, 1200}};
 
 } // namespace clvr::tunables

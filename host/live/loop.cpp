@@ -24,10 +24,15 @@ struct View {
     bool show_due = false;   // the samples that there are, again
     bool failed = false;     // to be drawn: it is left alone
     int samples = 0;         // of the picture in full size; 0: there is none
+    int divider = 0;         // of the last moving picture
 
     /// A march has all that it ever gets at once.
     int wanted() const { return scene.mode == Mode::path ? scene.spp : 1; }
     bool complete() const { return samples > 0 && (scene.mode != Mode::path || samples == scene.spp); }
+
+    /// Whether the first picture in full size is drawn as in motion, to be there soon: four feature rays take most of its time. Not where
+    /// it was there in motion.
+    bool first_is_quick() const { return samples == 0 && wanted() > 1 && divider > 1; }
 
     /// To reach by the next pass: 1, 2, 4, 8 ... and at last what is wanted.
     int next_samples() const {
@@ -193,7 +198,7 @@ private:
         const bool moving = v.moving;
         const int divider = moving ? size_.divider(v.scene.width, v.scene.height) : 1;
         const Painter::Draw wanted{divided(v.scene.width, divider), divided(v.scene.height, divider), moving ? 1 : v.next_samples(),
-                                   moving};
+                                   moving || v.first_is_quick()};
         const bool changed = std::exchange(v.changed, false);
         v.failed = true; // if it throws
         std::optional<Painter::Drawn> drawn = painter_.draw(wanted, cancelled_);
@@ -201,7 +206,7 @@ private:
         if (!drawn) return;
         const double elapsed_ms = drawn->paths_ms + drawn->rest_ms;
         if (moving)
-            v.moving_due = false;
+            v.moving_due = false, v.divider = divider;
         else
             v.show_due = false, v.samples = drawn->samples;
         if (moving && changed) size_.measured(wanted.width, wanted.height, elapsed_ms);

@@ -14,7 +14,17 @@ using Steady = std::chrono::steady_clock;
 
 double ms_between(Steady::time_point from, Steady::time_point to) { return std::chrono::duration<double, std::milli>(to - from).count(); }
 
-bool is_cancelled(const RenderControl& control) { return control.cancelled && *control.cancelled; }
+/// Calls f(). False when it was cancelled.
+template <class F>
+bool unless_interrupted(const F& f) {
+    try {
+        f();
+        return true;
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::interrupted) throw;
+        return false;
+    }
+}
 
 Tonemap tonemap_of(const Scene& scene) { return {scene.tonemap, scene.exposure}; }
 
@@ -143,23 +153,21 @@ bool SessionPainter::take(Scene scene, int most, RenderControl control) {
     if (path && session_->samples() > most) session_->restart();
     scene.spp = std::max(0, scene.spp - session_->samples());
     control.go_on = true;
-    try {
+    const bool done = unless_interrupted([&] {
         if (path)
             pipeline_->take(*session_, scene, control);
         else
             clvr::take(*session_, scene, control);
-    } catch (const Error& error) {
-        if (error.kind() != ErrorKind::interrupted) throw;
-        return false;
-    }
-    return !is_cancelled(control);
+    });
+    return done && !(control.cancelled && *control.cancelled);
 }
 
-/// Makes the picture of it.
-void SessionPainter::filter(const Scene& scene, int most, const RenderControl& control) {
-    if (is_made(scene, most, control)) return;
-    if (scene.mode == Mode::path) pipeline_->filter(*session_);
+/// Makes the picture of it. False when cancelled.
+bool SessionPainter::filter(const Scene& scene, int most, const RenderControl& control) {
+    if (is_made(scene, most, control)) return true;
+    if (scene.mode == Mode::path && !unless_interrupted([&] { pipeline_->filter(*session_, control.cancelled); })) return false;
     made_ = Made{session_->samples(), scene.feature_samples, scene.features, control.light, control.draft};
+    return true;
 }
 
 std::optional<Painter::Drawn> SessionPainter::draw(const Draw& wanted, const std::atomic<bool>& cancelled) {
@@ -179,7 +187,7 @@ std::optional<Painter::Drawn> SessionPainter::draw(const Draw& wanted, const std
         bring(scene);
         if (!take(scene, most, control)) return std::nullopt;
         const auto taken = Steady::now();
-        filter(scene, most, control);
+        if (!filter(scene, most, control)) return std::nullopt;
         Drawn drawn{session_->picture(scene.background, tonemap_of(scene), true), session_->samples(), ms_between(start, taken), 0};
         drawn.rest_ms = ms_between(taken, Steady::now());
         return drawn;
@@ -205,8 +213,8 @@ std::optional<Double3> SessionPainter::position_at(double x, double y) {
 /// The picture of a scene that is resolved, at its size.
 void SessionPainter::make(const Scene& scene, const RenderControl& control) {
     bring(scene);
-    if (!take(scene, scene.spp, control)) throw Error(ErrorKind::interrupted, "the picture was cancelled");
-    filter(scene, scene.spp, control);
+    if (!take(scene, scene.spp, control) || !filter(scene, scene.spp, control))
+        throw Error(ErrorKind::interrupted, "the picture was cancelled");
 }
 
 DisplayPixels SessionPainter::still(const Scene& wanted, const RenderControl& given) {

@@ -64,7 +64,7 @@ private:
     void bring(const Scene& scene);
     bool is_made(const Scene& scene, int most, const RenderControl& control) const;
     bool take(Scene scene, int most, RenderControl control);
-    void filter(const Scene& scene, int most, const RenderControl& control);
+    bool filter(const Scene& scene, int most, const RenderControl& control);
     void make(const Scene& scene, const RenderControl& control);
 };
 

@@ -22,9 +22,9 @@ void Pipeline::take(RenderSession& session, const Scene& scene, RenderControl co
 }
 
 /// Where the session keeps the picture on a device, it is denoised there; else on the first device that can.
-void Pipeline::filter(RenderSession& session) {
+void Pipeline::filter(RenderSession& session, const std::atomic<bool>* cancelled) {
     if (!model_) return;
-    if (Film* const film = session.film()) return denoiser_on(film->device()).denoise(*film);
+    if (Film* const film = session.film()) return denoiser_on(film->device()).denoise(*film, cancelled);
     const Frame noisy = session.frame();
     std::vector<Device> devices = session.devices();
     session.set_filtered(on_first(devices, [&](Device& device) { return denoiser_on(device).denoise(noisy); }));

@@ -16,9 +16,9 @@ public:
     /// features are marched where `control.light` says so or the model reads them. Throws as take() and Denoiser do.
     void run(RenderSession& session, const Scene& scene, RenderControl control);
 
-    /// The two halves of run(), for who may want to stop between them.
+    /// The two halves of run(). `cancelled`: stops the filter, where the picture is on a device, with Error{interrupted}.
     void take(RenderSession& session, const Scene& scene, RenderControl control);
-    void filter(RenderSession& session);
+    void filter(RenderSession& session, const std::atomic<bool>* cancelled = nullptr);
 
 private:
     std::optional<Model> model_;

@@ -334,6 +334,7 @@ bool RenderSession::march(March kind, int rays, bool lit, const RenderControl& c
                            marcher.run(first, count, *film_, film_->find(names.front()));
                        else
                            marcher.run(first, count, planes, numbers_, first);
+                       if (film_ && control.cancelled) film_->device().finish(); // or all chunks would be on their way at once
                        const std::lock_guard lock(progress_);
                        if (control.progress) control.progress({0, samples_});
                    });

@@ -10,24 +10,26 @@ static inline vfloat source_pixels(__global const float* plane, int at, int step
 }
 
 // `source` holds planes of `size` floats; `channel` is (plane, ChannelKind) per input channel. `from`: where in a plane the part's first pixel lies, its
-// steps to the next pixel of a row and of a column (negative or swapped when the part is turned); n, the image of the batch. Radiance is premultiplied.
-__kernel void assemble(__constant DenoiseParams* p, SourceParams s, __global const float* source, uint size, int4 from,
+// steps to the next pixel of a row and of a column (negative or swapped when the part is turned); n, the image of the batch. Radiance is premultiplied. The
+// network's input is that of `p`, a band of the picture `q` whose row `shift` is the band's first; all else is written for the picture.
+__kernel void assemble(__constant DenoiseParams* p, __constant DenoiseParams* q, int shift, SourceParams s, __global const float* source, uint size, int4 from,
                        __global const int2* channel, __global float* input, __global float4* splatted, __global float4* remodulation, __global float* target,
                        __global float* known) {
     int x = (int)get_global_id(0) * CLVR_WIDTH, y = (int)get_global_id(1), n = from.w;
     if (x >= p->width || y >= p->height) return;
     int at = from.x + x * from.y + y * from.z, left = p->width - x;
     vmask inside = v_lt(v_iota, (vint)(left));
-    size_t to = (size_t)(y * p->row + x);
+    int row = y + shift;
 #define SOURCE(plane) source_pixels(source + (size_t)(plane) * size, at, from.y, left)
-#define PLANE(planes, channels, c, v) v_store(v_select(inside, v, (vfloat)(0.0f)), planes + plane_start(p, n, channels, c) + to)
+#define PLANE(p, planes, channels, c, y, v) \
+    v_store(v_select(inside, v, (vfloat)(0.0f)), planes + plane_start(p, n, channels, c) + (size_t)(y * p->row + x))
 
     for (int c = 0; c < s.channels; ++c) {
         vfloat v = (vfloat)(s.noise);
         if (channel[c].y != CLVR_CHANNEL_NOISE) v = SOURCE(channel[c].x);
         if (channel[c].y == CLVR_CHANNEL_RADIANCE) v = v_tonemap(v_min(v * s.exposure, (vfloat)(s.ceiling)));
         if (channel[c].y == CLVR_CHANNEL_NORMAL) v = fma(v, (vfloat)(0.5f), (vfloat)(0.5f));
-        PLANE(input, s.channels, c, v);
+        PLANE(p, input, s.channels, c, y, v);
     }
 
     vfloat weight = (vfloat)(1.0f);
@@ -39,14 +41,14 @@ __kernel void assemble(__constant DenoiseParams* p, SourceParams s, __global con
         radiance[k] = v_min(SOURCE(s.beauty + k) * s.exposure, (vfloat)(s.ceiling));
         if (s.known >= 0) {
             vfloat light = v_min(SOURCE(s.known + k) * s.exposure, (vfloat)(s.ceiling));
-            PLANE(known, 3, k, light);
+            PLANE(q, known, 3, k, row, light);
             radiance[k] -= light;
         }
         radiance[k] /= albedo;
         factor[k] = albedo * weight;
-        if (s.target >= 0) PLANE(target, 3, k, SOURCE(s.target + k) * s.exposure);
+        if (s.target >= 0) PLANE(q, target, 3, k, row, SOURCE(s.target + k) * s.exposure);
     }
     Colours colours = {radiance[0], radiance[1], radiance[2], weight}, factors = {factor[0], factor[1], factor[2], (vfloat)(0.0f)};
-    store_colours(p, splatted, n, x, y, colours);
-    store_colours(p, remodulation, n, x, y, factors);
+    store_colours(q, splatted, n, x, row, colours);
+    store_colours(q, remodulation, n, x, row, factors);
 }

@@ -5,6 +5,8 @@
 
 #define SIGMOID(sum, at) v_sigmoid(sum)
 
-__kernel void guides(__constant DenoiseParams* p, __global const float* in, __global const float* weights, __global const float* bias, __global float* out) {
-    CONVOLVE(p, in, weights, bias, out, SIGMOID)
+// `p` is a band of the picture `q`, whose row `shift` is the band's first; of it the rows from `first` to before `end` are wanted.
+__kernel void guides(__constant DenoiseParams* p, __global const float* in, __global const float* weights, __global const float* bias, __global float* out,
+                     __constant DenoiseParams* q, int shift, int first, int end) {
+    CONVOLVE_ROWS(p, in, weights, bias, first, end, q, shift, out, SIGMOID)
 }

@@ -42,6 +42,12 @@ auto rendered(const PreparedVolume& volume, Scene scene, int spp, const std::opt
     return take(session, scene);
 }
 
+/// One that does not read the light features.
+inline const Model& unlit_model() {
+    static const Model model = read_model("color");
+    return model;
+}
+
 /// To a PNG's.
 inline DisplayPixels rendered(const Scene& scene, int spp = 0, const PreparedVolume& volume = *wavy(),
                               const std::optional<Model>& model = default_model(), const EnvironmentTables& environment = {}) {

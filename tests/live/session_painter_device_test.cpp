@@ -180,14 +180,18 @@ TEST(SessionPainter, WithoutAModelShowsTheSamples) {
 }
 
 TEST(SessionPainter, SeveralDevicesShowTheSameBits) {
-    SessionPainter painter = painter_of(two_devices());
-    const Scene scene = wavy_scene();
-    painter.set_scene(scene);
-    for (const int samples : {1, 2, 7}) {
-        in_motion(painter, scene.width, scene.height); // its features go, its sample stays
-        expect_same(in_full_size(painter, scene, samples).pixels, rendered(scene, samples));
-    }
-    expect_same(painter.still(scene, {}), rendered(scene));
+    for (const int rays : {1, 4})
+        for (const Model* model : {&default_model(), &unlit_model()}) {
+            SessionPainter painter = painter_of(two_devices(), *model);
+            Scene scene = wavy_scene();
+            scene.feature_samples = rays;
+            painter.set_scene(scene);
+            for (const int samples : {1, 2, 7}) {
+                in_motion(painter, scene.width, scene.height); // the features may go, the samples stay
+                expect_same(in_full_size(painter, scene, samples).pixels, rendered(scene, samples, *wavy(), *model));
+            }
+            expect_same(painter.still(scene, {}), rendered(scene, 7, *wavy(), *model));
+        }
 }
 
 TEST(SessionPainter, ADeviceThatIsLostIsLeftOutAndSaid) {

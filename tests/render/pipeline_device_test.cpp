@@ -43,6 +43,24 @@ TEST(Pipeline, GivesTheSameBitsOnSeveralDevices) {
     expect_same(one.frame(), anew.frame());
 }
 
+TEST(Pipeline, ACancelledFilterLeavesTheSamples) {
+    const PreparedVolume volume = wavy_volume();
+    const Scene scene = wavy_scene();
+    RenderSession session({shared_device()}, volume, scene), other({shared_device()}, volume, scene);
+    Pipeline pipeline(read_model("default"));
+    pipeline.take(session, scene, {});
+    const std::atomic<bool> cancelled{true};
+    try {
+        pipeline.filter(session, &cancelled);
+        FAIL() << "it was cancelled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::interrupted);
+    }
+    pipeline.filter(session);
+    pipeline.run(other, scene, {});
+    expect_same(session.frame(), other.frame());
+}
+
 TEST(Pipeline, WithoutAModelIsTheSamples) {
     const PreparedVolume volume = wavy_volume();
     const Scene scene = wavy_scene();
