@@ -2,6 +2,8 @@
 #include "host/view/beast/http_connection.hpp"
 #include "host/view/beast/listening.hpp"
 
+#include <boost/asio/strand.hpp>
+
 #include <future>
 #include <thread>
 
@@ -38,7 +40,7 @@ public:
 
     template <class F>
     void post(F&& call) {
-        asio::post(shared_.io, std::forward<F>(call));
+        asio::post(in_order_, std::forward<F>(call));
     }
 
     template <class F>
@@ -62,6 +64,8 @@ private:
     static constexpr int most_connections = 64;
     Shared shared_;
     Listening listening_;
+    asio::strand<asio::io_context::executor_type> in_order_{
+        shared_.io.get_executor()}; // io alone would put calls of its own thread behind others
     std::optional<asio::ssl::context> secure_;
     asio::steady_timer waiting_{shared_.io};
     std::thread thread_;

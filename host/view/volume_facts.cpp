@@ -107,9 +107,10 @@ Scene with_camera(Scene scene, const PlacedCamera& camera) {
 }
 
 PlacedCamera turned(PlacedCamera camera, double degrees) {
-    const Double3 axis = unit(camera.up), arm = camera.eye - camera.target;
     const double c = std::cos(degrees * radian), s = std::sin(degrees * radian);
-    camera.eye = camera.target + arm * c + cross(axis, arm) * s + axis * (inner(axis, arm) * (1 - c));
+    const auto around_z = [&](const Double3& v) { return Double3{c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]}; };
+    camera.eye = camera.target + around_z(camera.eye - camera.target);
+    camera.up = around_z(camera.up);
     return camera;
 }
 

@@ -21,7 +21,7 @@ struct PlacedCamera {
 PlacedCamera placed_camera(const Scene& scene, const PreparedVolume& volume);
 /// The scene with that camera in place of angles: as the page sends it.
 Scene with_camera(Scene scene, const PlacedCamera& camera);
-/// Turned by an angle [degrees] around its target, to the right of who looks from above.
+/// Turned by an angle [degrees] as azimuths grow: around the vertical (z) through its target.
 PlacedCamera turned(PlacedCamera camera, double degrees);
 
 } // namespace clvr::view
