@@ -21,8 +21,8 @@
 
 namespace clvr::test {
 
-/// One page. Speaks through pipes (--remote-debugging-pipe): messages are JSON, each ended by a zero. What the browser refuses, and what does
-/// not come in time, is thrown.
+/// One page. Speaks through pipes (--remote-debugging-pipe): messages are JSON, each ended by a zero. What the browser refuses, and what
+/// does not come in time, is thrown.
 class Chromium {
 public:
     using Json = nlohmann::json;
@@ -77,7 +77,9 @@ public:
                                           {"x", x},
                                           {"y", y},
                                           {"button", names[at]},
-                                          {"buttons", button == Button::none ? 0 : at == 3 ? 4 : at},
+                                          {"buttons", button == Button::none ? 0
+                                                      : at == 3              ? 4
+                                                                             : at},
                                           {"clickCount", clicks}});
     }
     void drag(double x0, double y0, double x1, double y1, Button button = Button::left) {
@@ -185,7 +187,8 @@ private:
     void note(const Json& event) {
         const std::string method = event.value("method", "");
         if (method == "Runtime.exceptionThrown") complaints_.push_back(event.at("params").at("exceptionDetails").dump());
-        if (method == "Runtime.consoleAPICalled" && event.at("params").at("type") == "error") complaints_.push_back(event.at("params").dump());
+        if (method == "Runtime.consoleAPICalled" && event.at("params").at("type") == "error")
+            complaints_.push_back(event.at("params").dump());
         if (method == "Log.entryAdded" && event.at("params").at("entry").at("level") == "error")
             complaints_.push_back(event.at("params").at("entry").dump());
     }

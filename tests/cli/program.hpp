@@ -51,7 +51,8 @@ public:
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text(out_), text(err_)};
     }
     pid_t pid() const { return pid_; }
-    /// What it has written to stderr so far.
+    /// What it has written so far.
+    std::string out() const { return text(out_); }
     std::string err() const { return text(err_); }
 
 private:
