@@ -210,7 +210,7 @@ private:
         else
             v.show_due = false, v.samples = drawn->samples;
         if (moving && changed) size_.measured(wanted.width, wanted.height, elapsed_ms);
-        const Phase phase = moving ? Phase::moving : v.complete() ? Phase::settled : Phase::accumulating;
+        const Phase phase = wanted.moving ? Phase::moving : v.complete() ? Phase::settled : Phase::accumulating;
         sinks_.picture(std::make_shared<const LivePicture>(
             LivePicture{++pictures_, v.generation, phase, divider, drawn->samples, std::move(drawn->pixels), elapsed_ms}));
     }

@@ -7,8 +7,8 @@
 namespace clvr {
 
 enum class Phase {
-    moving,       ///< small and quick, while the scene changes
-    accumulating, ///< full size, more samples follow
+    moving,       ///< quick: not the bits of its samples. Small while the scene changes, at last once in full size
+    accumulating, ///< full size, as `clvr render` writes it at these samples; more follow
     settled       ///< full size, with all samples that the scene asks for: nothing follows
 };
 

@@ -40,7 +40,9 @@ DisplayPixels over_black(const DisplayPixels& pixels) {
 
 std::vector<unsigned char> encoded_pixels(const LivePicture& picture) {
     if (picture.phase == Phase::settled) return encode_png(picture.pixels, PngEffort::quick);
-    const JpegQuality quality = picture.phase == Phase::moving ? JpegQuality{80, false} : JpegQuality{92, true};
+    // Small pictures are shown enlarged, and their errors with them; they take few bytes.
+    const bool fast = picture.phase == Phase::moving && picture.divider == 1;
+    const JpegQuality quality = fast ? JpegQuality{80, false} : JpegQuality{92, true};
     return encode_jpeg(picture.pixels.components == 4 ? over_black(picture.pixels) : picture.pixels, quality);
 }
 

@@ -85,7 +85,7 @@ function draw_over() {
 function status_of({ phase, samples, divider, generation }) {
     const began = sent.get(generation)?.time;
     const time = began === undefined ? "" : ` · ${((performance.now() - began) / 1000).toFixed(1)} s`;
-    if (phase === "moving") return divider > 1 ? `in motion · 1/${divider} size` : "in motion";
+    if (phase === "moving") return divider > 1 ? `in motion · 1/${divider} size` : "draft";
     if (state.scene.mode !== "path") return `complete${time}`;
     return phase === "settled" ? `${samples} samples${time}` : `${samples} of ${state.scene.spp} samples${time}`;
 }
