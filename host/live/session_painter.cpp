@@ -233,7 +233,8 @@ Frame SessionPainter::frame(const Scene& wanted, const RenderControl& given) {
     RenderControl control = given;
     control.light = true, control.draft = false;
     return guarded(scene, [&] {
-        if (session_ && !scene.features) session_->restart(), made_.reset(); // no features of a position_at()
+        const bool read = model_ && scene.mode == Mode::path;                         // features, by the model: the frame has them anyway
+        if (session_ && !scene.features && !read) session_->restart(), made_.reset(); // or it had those of a position_at()
         make(scene, control);
         return session_->frame(scene.background);
     });

@@ -162,6 +162,9 @@ TEST(SessionPainter, AFrameHasAllChannels) {
     expect(default_model());
     in_full_size(painter, scene, 7);
     scene.features = false;
+    RenderControl control;
+    control.progress = [&](const RenderProgress& p) { EXPECT_EQ(p.samples, 7) << "the samples were there"; };
+    painter.frame(scene, control);
     expect(default_model());
     scene.mode = Mode::dvr;
     painter.set_scene(scene);
