@@ -8,11 +8,11 @@ set -euo pipefail
 build=(build-essential cmake ninja-build
     ocl-icd-opencl-dev opencl-clhpp-headers pocl-opencl-icd           # OpenCL, and a device that every machine has
     libgdcm-dev libtiff-dev libhdf5-dev libpugixml-dev                # volume files
-    zlib1g-dev libbz2-dev liblz4-dev libdeflate-dev                   # what they are packed with
+    zlib1g-dev libbz2-dev liblz4-dev libdeflate-dev libminizip-dev    # what they are packed with
     libopenexr-dev libpng-dev libturbojpeg0-dev                       # pictures
     libtbb-dev                                                        # work on all cores
     libclblast-dev                                                    # matrix products in training
-    libcurl4-openssl-dev                                              # downloads
+    libcurl4-openssl-dev libboost-dev                                 # downloads; the server of clvr view (headers alone)
     libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev) # command line, JSON, text, checksums
 test=(libgtest-dev libgmock-dev 'clang-14|clang' 'libclang-rt-14-dev|libclang-rt-dev' 'clang-format-14|' gcovr 'oclgrind|' mesa-opencl-icd) # A|B: A, else B; A|: A where there is one
 

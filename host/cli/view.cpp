@@ -89,10 +89,25 @@ view::ViewerSettings viewer_settings(const ViewOptions& o, const Scene& scene, c
     settings.version = CLVR_VERSION;
     settings.output_dir = o.output_dir;
     const bool gpu = std::any_of(devices.begin(), devices.end(), [](const Device& d) { return d.facts().type == DeviceType::gpu; });
+    settings.time_steps = time_steps(volume->voxels);
+    settings.read_step = [scene](int step) {
+        VolumeReadOptions reading = scene.reading;
+        reading.frame = step;
+        return std::make_shared<const PreparedVolume>(read_volume(scene.volume, reading));
+    };
+    settings.show_volume = [](Painter& painter, const view::VolumePointer& shown) {
+        dynamic_cast<SessionPainter&>(painter).set_volume(shown);
+    };
     if (gpu) settings.loop.moving_budget_s = 1.0 / 30;
     settings.provenance = [devices](Frame& frame, const Scene& made) { add_provenance(frame, made, provenance_json(made), devices); };
     return settings;
 }
+
+/// Stops the server before its viewer is gone, also when something throws.
+struct Stopping {
+    view::Server& server;
+    ~Stopping() { server.stop(view::bye_reply("clvr view has ended.")); }
+};
 
 void announce(const ViewOptions& o, const view::Server& server, const std::string& folder) {
     const view::Whereabouts where = whereabouts(o.server, server.port(), user_name(), machine_name());
@@ -119,7 +134,9 @@ const char* wait(const ViewOptions& o, const view::Viewer& viewer, const std::at
 
 void run_viewer(ViewOptions o) {
     check(o);
-    Scene scene = scene_of(o.scene);
+    std::vector<std::string> notes;
+    Scene scene = view::within_limits(scene_of(o.scene), notes);
+    for (const std::string& note : notes) spdlog::warn("{}", note);
     const Model model = read_model("default");
     std::vector<Device> devices = open_devices(o.scene.devices);
     const view::VolumePointer volume = read_volume_of(scene, devices);
@@ -132,6 +149,7 @@ void run_viewer(ViewOptions o) {
     SessionPainter painter(devices, volume, model, [](const Scene& s) { return read_environment(s); });
     SteadyClock clock;
     view::Viewer viewer(viewer_settings(o, scene, volume, devices), painter, clock, server);
+    const Stopping stopping{server};
     server.start(viewer);
     announce(o, server, viewer.folder());
     const char* const why = wait(o, viewer, interrupted);
@@ -157,6 +175,7 @@ void add_server_options(CLI::App& c, ViewOptions& o) {
     c.add_option("--output-dir", o.output_dir, "Write what is saved there, too, beside its download")->type_name("DIR")->group("Output");
     reads_files(c, {"--cert", "--cert-key"});
     writes_files(c, "--token-file");
+    writes_files(c, "--output-dir");
 }
 
 } // namespace

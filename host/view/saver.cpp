@@ -43,14 +43,20 @@ struct Saver::Turntable {
 Saver::Saver(Loop& loop, Worker& worker, Jobs& jobs, SaverSettings settings)
     : loop_(loop), worker_(worker), jobs_(jobs), settings_(std::move(settings)) {}
 
-/// f(); what it throws ends the job.
+/// f(); what it throws ends the job, and what was written of its file is gone.
 template <class F>
 void Saver::guarded(const Job& job, F&& f) {
+    const auto remove_file = [&] {
+        std::error_code ignored;
+        fs::remove(place_of(job), ignored);
+    };
     try {
         f();
     } catch (const Error& e) {
+        remove_file();
         e.kind() == ErrorKind::interrupted ? jobs_.cancelled(job.id) : jobs_.failed(job.id, e.line());
     } catch (...) {
+        remove_file();
         jobs_.failed(job.id, words_of_exception());
     }
 }

@@ -26,6 +26,18 @@ std::string file_name(const std::string& path) { return fs::path(path).filename(
 
 } // namespace
 
+Scene within_limits(Scene scene, std::vector<std::string>& notes) {
+    if (const int side = std::max(scene.width, scene.height); side > largest_side) {
+        const double shrink = static_cast<double>(largest_side) / side;
+        for (int* const length : {&scene.width, &scene.height}) *length = std::max(1, static_cast<int>(*length * shrink));
+        notes.push_back(fmt::format("The scene's picture is larger than {0} pixels a side; it is shown with {0}.", largest_side));
+    }
+    if (scene.spp > largest_samples)
+        notes.push_back(fmt::format("The scene has more than {0} samples per pixel; it is shown with {0}.", largest_samples));
+    scene.spp = std::min(scene.spp, largest_samples);
+    return scene;
+}
+
 SceneForm::SceneForm(const Scene& first) : volume_(first) {
     if (!first.light.image.empty()) images_.push_back({first_handle, first.light.image, file_name(first.light.image)});
 }
@@ -65,13 +77,7 @@ Scene SceneForm::from_file(const std::string& text, std::vector<std::string>& no
     }
     if (!parsed.volume_sha256.empty() && !volume_.volume_sha256.empty() && parsed.volume_sha256 != volume_.volume_sha256)
         notes.push_back("The scene was saved with another volume.");
-    if (const int side = std::max(parsed.width, parsed.height); side > largest_side) {
-        const double shrink = static_cast<double>(largest_side) / side;
-        parsed.width = std::max(1, static_cast<int>(parsed.width * shrink)),
-        parsed.height = std::max(1, static_cast<int>(parsed.height * shrink));
-        notes.push_back(fmt::format("The scene's picture is larger than {0} pixels a side; it is shown with {0}.", largest_side));
-    }
-    parsed.spp = std::min(parsed.spp, largest_samples);
+    parsed = within_limits(std::move(parsed), notes);
     return checked(std::move(parsed));
 }
 

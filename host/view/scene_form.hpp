@@ -7,6 +7,9 @@
 
 namespace clvr::view {
 
+/// The scene with as large a picture and as many samples as a viewer shows; `notes` say what was changed.
+Scene within_limits(Scene scene, std::vector<std::string>& notes);
+
 /// Volume and reading are the server's, whatever a client says; a client names no file but an image by the handle that it was given.
 class SceneForm {
 public:

@@ -5,6 +5,7 @@
 #include "host/io/model/model_file.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/io/scene/scene_file.hpp"
+#include "host/view/scene_form.hpp"
 #include "runtime/system/embedded.hpp"
 #include "tests/fuzz/volume_samples.hpp"
 #include "tests/io/exr_writers.hpp"
@@ -14,6 +15,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <nlohmann/json.hpp>
 
 namespace clvr::test {
 
@@ -99,6 +101,28 @@ Samples transfer_function_samples() {
     return samples;
 }
 
+Samples view_message_samples() {
+    const auto text = [](const char* type, const std::string& file) {
+        return nlohmann::json{{"type", type}, {"id", 1}, {"text", file}}.dump();
+    };
+    Scene lit = full_scene();
+    lit.volume = "demo:head";
+    Samples samples{
+        {"hello", R"({"type":"hello","token":"0123456789abcdef","role":"control"})"},
+        {"scene", R"({"type":"scene","generation":9007199254740991,"scene":)" + view::SceneForm(lit).to_page(lit) + "}"},
+        {"image", R"({"type":"scene","generation":1,"scene":{"light":{"environment":"image","image":"scene"}}})"},
+        {"ack", R"({"type":"ack","number":4294967295})"},
+        {"pause", R"({"type":"pause","paused":true})"},
+        {"take_control", R"({"type":"take_control"})"},
+        {"pick", R"({"type":"pick","id":3,"x":0.5,"y":1})"},
+        {"time_step", R"({"type":"time_step","step":2})"},
+        {"save", R"({"type":"save","id":4,"what":"turntable","format":"png","width":640,"height":480,"samples":64,"views":72})"},
+        {"cancel", R"({"type":"cancel","job":"1"})"},
+        {"scene_text", text("scene_text", to_json(lit))},
+        {"transfer_text", text("transfer_text", to_json(transfer_preset("ct-bone")))}};
+    return samples;
+}
+
 Samples model_samples() {
     Model m;
     m.channels = {"R", "G", "B", "depth.Z"};
@@ -158,6 +182,7 @@ const std::map<std::string, Samples (*)()>& other_samples() {
          }},
         {"scene", scene_samples},
         {"transfer_function", transfer_function_samples},
+        {"view_message", view_message_samples},
         {"model", model_samples},
         {"tensors", tensor_samples},
         {"tuning",

@@ -11,6 +11,8 @@
 #include "host/io/scene/scene_file.hpp"
 #include "host/io/volume/readers.hpp"
 #include "host/io/volume/samples.hpp"
+#include "host/view/messages.hpp"
+#include "host/view/scene_form.hpp"
 #include "runtime/choose/remembered.hpp"
 #include "runtime/system/atomic_file.hpp"
 #include "runtime/tune/tuning.hpp"
@@ -158,6 +160,26 @@ void transfer_function(const std::string& path) {
     }
 }
 
+/// What a page of `clvr view` says, with what is inside it.
+void view_message(const std::string& path) {
+    const view::ClientMessage message = view::parse_message(read_text(path));
+    Scene first;
+    first.volume = "demo:head", first.light.image = "sky.hdr", first.light.environment = Light::Environment::image;
+    const view::SceneForm form(first);
+    if (const auto* change = std::get_if<view::SceneChange>(&message)) {
+        const Scene scene = form.from_page(change->scene);
+        require(scene.volume == first.volume, "a volume that a client named");
+        require(scene.light.image.empty() || scene.light.image == first.light.image, "a file that a client named");
+        require(form.to_page(form.from_page(form.to_page(scene))) == form.to_page(scene), "a scene that does not come back");
+    }
+    std::vector<std::string> notes;
+    if (const auto* file = std::get_if<view::SceneText>(&message)) {
+        const Scene scene = form.from_file(file->text, notes);
+        require(scene.light.image.empty() || scene.light.image == first.light.image, "a file that a client named");
+    }
+    if (const auto* file = std::get_if<view::TransferText>(&message)) parse_transfer_function(file->text, "transfer function");
+}
+
 void model(const std::string& path) {
     const Model m = read_model(path);
     require(model_of(tensors_of(m), "model").flat() == m.flat(), "a model that does not come back");
@@ -222,6 +244,7 @@ const std::vector<FuzzTarget>& fuzz_targets() {
         {"environment", {"a.hdr"}, environment},
         {"scene", {"a.json"}, scene},
         {"transfer_function", {"a.json"}, transfer_function},
+        {"view_message", {"a.json"}, view_message},
         {"model", {"a.safetensors"}, model},
         {"tensors", {"a.safetensors"}, tensors},
         {"tuning", {"a.json"}, tuning},

@@ -149,6 +149,7 @@ TEST_F(Saves, CanBeCancelled) {
     page.say(json{{"type", "cancel"}, {"job", "77"}});
     page.say(json{{"type", "cancel"}, {"job", begun["job"]}});
     EXPECT_EQ(finished(page)["state"], "cancelled");
+    EXPECT_TRUE(std::filesystem::is_empty(viewer->folder())); // nothing is left of it
     painter.hold = false;
     page.say(save("still"));
     EXPECT_EQ(finished(page)["state"], "done");

@@ -32,6 +32,7 @@ only host/render runtime/ host/volume/ host/appearance/ host/frame/ host/denoise
 only host/live runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/denoise/ host/live/
 only host/denoise runtime/ host/frame/ host/denoise/ kernels/shared/
 only host/io runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/denoise/ host/io/ kernels/shared/
+only host/view runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/live/ host/io/ host/view/
 only host/pairs runtime/ host/volume/ host/appearance/ host/frame/ host/render/ host/io/ host/pairs/
 only host/train runtime/ host/frame/ host/denoise/ host/io/ host/pairs/ host/train/ kernels/shared/
 only host/eval runtime/ host/frame/ host/denoise/ host/io/ host/pairs/ host/train/ host/eval/
@@ -49,9 +50,10 @@ only kernels/selftest shared/ lib/
 only kernels/probe shared/ lib/ trust_operations.h
 
 nowhere_but 'runtime/drivers/opencl\.hpp' '#\s*include\s*<CL/(cl|opencl)'
-nowhere_but 'host/io/[a-z0-9_/]*\.cpp' '#\s*include\s*[<"](ImfF?|png\.h|zlib\.h|libdeflate|bzlib|lz4|turbojpeg|hdf5|pugixml|tiffio|gdcm)'
+nowhere_but 'host/io/[a-z0-9_/]*\.cpp' '#\s*include\s*[<"](ImfF?|png\.h|zlib\.h|minizip|libdeflate|bzlib|lz4|turbojpeg|hdf5|pugixml|tiffio|gdcm)'
 nowhere_but 'runtime/system/parallel\.cpp' '#\s*include\s*<tbb'
 nowhere_but 'host/dataset/download\.cpp' '#\s*include\s*<curl'
+nowhere_but 'host/view/server\.cpp|host/view/beast/[a-z_]*\.hpp' '#\s*include\s*(<boost|"host/view/beast)'
 nowhere_but 'host/train/matrix_layers\.cpp' '#\s*include\s*<clblast'
 complain "clocks that jump have no place in the product: use steady_clock" "$(grep -rnE 'system_clock|high_resolution_clock|gettimeofday' runtime host || true)"
 complain "the runtime knows no volume, no image, no network" "$(grep -rniE 'volume|brick|voxel|guide|denoise' runtime || true)"

@@ -1,5 +1,6 @@
 // TIFF files of pages, and folders of TIFF slices, into Voxels.
 #include "host/io/volume/readers.hpp"
+#include "host/io/volume/reading_options.hpp"
 #include "host/io/volume/slice_stack.hpp"
 #include "host/io/volume/tiff_layout.hpp"
 
@@ -157,12 +158,9 @@ Voxels read_pages(const std::string& path, const std::string& name, const Volume
     take_times_as_slices(layout, form, v);
     const ChosenChannel channel = choose_channel(layout, first, form, options, path, v);
     check_frame(options.frame, layout.times, path);
-    if (layout.times > 1) {
-        if (options.frame == 0)
-            v.notes.push_back(fmt::format("the file has {} times: the first is read (--frame N picks)", layout.times));
-        else
-            v.decisions.push_back(fmt::format("time {} of {}", options.frame, layout.times));
-    }
+    if (layout.times > 1 && options.frame == 0)
+        v.notes.push_back(fmt::format("the file has {} times: the first is read (--frame N picks)", layout.times));
+    say_frame(options.frame, layout.times, "time", v.decisions);
     const std::vector<TiffPlane> planes = chosen_planes(layout, channel.plane, options.frame, path);
     for (const TiffPlane& p : planes) { // every page is checked before the first is decoded
         const TiffFile& file = files.select(p);
