@@ -185,7 +185,9 @@ void add_view_command(CLI::App& app) {
     auto options = std::make_shared<ViewOptions>();
     add_scene_options(*command, options->scene);
     add_server_options(*command, *options);
-    command->footer("From another machine:\n"
+    command->footer("Transfer functions:\n"
+                    "  JSON files as `clvr render --help` describes them, or made in the page.\n"
+                    "From another machine:\n"
                     "  The page is served to this machine alone. From elsewhere, run the ssh command\n"
                     "  that is printed and open the printed address there. The part after # is a\n"
                     "  token: who has it can see and control the view.\n"
