@@ -14,7 +14,7 @@ build=(build-essential cmake ninja-build
     libclblast-dev                                                    # matrix products in training
     libcurl4-openssl-dev libboost-dev                                 # downloads; the server of clvr view (headers alone)
     libcli11-dev nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev) # command line, JSON, text, checksums
-test=(libgtest-dev libgmock-dev 'clang-14|clang' 'libclang-rt-14-dev|libclang-rt-dev' 'clang-format-14|' gcovr 'oclgrind|' mesa-opencl-icd) # A|B: A, else B; A|: A where there is one
+test=(libgtest-dev libgmock-dev 'clang-14|clang' 'libclang-rt-14-dev|libclang-rt-dev' 'clang-format-14|' gcovr 'oclgrind|' mesa-opencl-icd 'chromium|') # A|B: A, else B; A|: A where there is one
 
 case ${1:-build} in
     build) wanted=("${build[@]}") ;;
