@@ -15,7 +15,7 @@ namespace {
 enum class Pass { none, moving, still };
 
 /// Which pictures a scene still needs: the render thread's own.
-struct View {
+struct Shown {
     Scene scene;
     std::uint64_t generation = 0;
     bool moving_due = false; // a moving picture
@@ -118,7 +118,7 @@ private:
     std::atomic<bool> cancelled_{false}; // the pass that runs
 
     // The render thread's own.
-    std::optional<View> view_;
+    std::optional<Shown> view_;
     MovingSize size_;
     std::uint64_t pictures_ = 0;
     std::thread thread_; // uses all of the above
@@ -155,7 +155,7 @@ private:
 
     void draw_or_wait(std::unique_lock<std::mutex>& lock) {
         if (!view_ || view_->failed) return clock_.wait(changed_, lock, Clock::Time::max());
-        View& v = *view_;
+        Shown& v = *view_;
         if (v.moving && !v.moving_due) {
             const auto settled =
                 last_post_ + std::chrono::duration_cast<Clock::Time::duration>(std::chrono::duration<double>(settings_.settle_s));
@@ -194,7 +194,7 @@ private:
         }
     }
 
-    void draw(View& v) {
+    void draw(Shown& v) {
         const bool moving = v.moving;
         const int divider = moving ? size_.divider(v.scene.width, v.scene.height) : 1;
         const Painter::Draw wanted{divided(v.scene.width, divider), divided(v.scene.height, divider), moving ? 1 : v.next_samples(),

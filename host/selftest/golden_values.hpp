@@ -12,9 +12,9 @@ namespace clvr::selftest {
 /// pixel_hash of each golden scene (golden_scene), the denoised one's of golden_denoised, the rendered and denoised one's of
 /// golden_picture.
 inline const std::map<std::string, std::string> golden_hashes{
-    {"automatic", "4f03f37bb059be208ca50d9e527d364d09a6da76374192c82d7439769cc5414c"},
+    {"automatic", "9134b63b13f2a2de5b141411ae7cacfeacec5ce7863a67b88d513b5efecd6e15"},
     {"dvr", "c9826472ad12078dd257a7efc6e6dccf4e914f1b8bee7b4f48273ec36dfa573b"},
-    {"gradient", "7b191932e2d482fde6bdb0f2179f929abc5eaa4c7407648abd046aa260348ab0"},
+    {"gradient", "29f4915e6f68007451d1693799e96547b821e1fc8ee178b74863bfc7f49062e7"},
     {"mip", "9bcdade87d2f47653dd0f64cb968c24500a67109609089504ad09896e01cf257"},
     {"phase", "7154431002c1afea4d385351a75823ddbe5ca3eb1d15a918573df6fcdad1c5a8"},
 };

@@ -50,21 +50,22 @@ static inline Vec3 facing_normal(const Volume* vol, Vec3 p, Vec3 dir, vfloat* st
 }
 
 #if CLVR_LIT
-// Where the weight of a ray passes `target`, within two steps of where it begins (else `place`): there it may grow from nothing to all within one step, and
+// Where a ray's transmittance falls to `goal`, within two steps of where it begins (else `place`): there it may grow from nothing to all within one step, and
 // what midpoints of steps say of it swings with the lattice, as rings in the light of smooth surfaces. Walked by quarters of a step, from half a step before.
 #define NEAR_BEGIN 10
-static inline vfloat place_near_begin(const Volume* vol, __global const float* coarse, const Ray* ray, const WeightCurve* curve, vfloat entry, vfloat target,
+static inline vfloat place_near_begin(const Volume* vol, __global const float* coarse, const Ray* ray, const WeightCurve* curve, vfloat entry, vfloat goal,
                                       vmask lanes, float step, vfloat place) {
     float quarter = 0.25f * step, rate = -vol->p->extinction * quarter;
-    vfloat t = v_max(fma((vfloat)(step), (vfloat)(-0.5f), curve->begin), entry), left = (vfloat)(1.0f), goal = 1.0f - target;
+    vfloat t = v_max(fma((vfloat)(step), (vfloat)(-0.5f), curve->begin), entry), left = (vfloat)(1.0f);
 #pragma nounroll
     for (int n = 0; n < NEAR_BEGIN && v_any(lanes); ++n) {
         Vec3 p = along(ray->o, ray->d, fma((vfloat)(quarter), (vfloat)(0.5f), t));
         Int3 i = clamp_position(vol->p, &p);
         vmask visible = v_gt(v_gather(coarse, coarse_index(vol->p, cell_of(i, vol->p->coarse.w))), (vfloat)(0.0f)); // else its brick may be absent
-        vfloat opacity = v_select(visible, opacity_of(vol, stored_value_in(vol, p, i)), (vfloat)(0.0f)), passed = left * v_exp(opacity * rate);
+        vfloat opacity = v_select(visible, opacity_of(vol, stored_value_in(vol, p, i)), (vfloat)(0.0f));
+        vfloat lost = fma(-left, v_exp(opacity * rate), left), passed = left - lost;
         vmask here = lanes & v_le(passed, goal);
-        place = v_select(here, fma((left - goal) / v_max(left - passed, (vfloat)(1e-12f)), (vfloat)(quarter), t), place);
+        place = v_select(here, fma((left - goal) / v_max(lost, (vfloat)(1e-12f)), (vfloat)(quarter), t), place);
         lanes &= v_not(here);
         left = passed, t += quarter;
     }
@@ -86,7 +87,7 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
 #if CLVR_LIT
     vfloat entry = t0;
 #endif
-    t0 = fma((vfloat)(step), (vfloat)(((float)number + 0.5f) / (float)CLVR_RAYS - 0.5f), t0); // of the lattice
+    t0 = fma((vfloat)(step), (vfloat)(fma((float)number + 0.5f, 1.0f / (float)CLVR_RAYS, -0.5f)), t0); // of the lattice
     vint k = (vint)(0);
 #if CLVR_LIT
     sums->lit = no_light();
@@ -131,9 +132,8 @@ static inline void march_ray(const Volume* vol, __global const float* coarse, __
 #endif
     }
 #if CLVR_LIT
-    vfloat target = light_target(sums->lit.weight, number);
-    sums->lit.place = place_near_begin(vol, coarse, &ray, &curve, entry, target, v_gt(sums->lit.weight, (vfloat)(0.0f)), step,
-                                       light_place(&curve, sums->lit.weight, target));
+    vfloat weight = sums->lit.weight, goal = fma(weight, (vfloat)(-light_quantile(number)), (vfloat)(1.0f));
+    sums->lit.place = place_near_begin(vol, coarse, &ray, &curve, entry, goal, v_gt(weight, (vfloat)(0.0f)), step, light_place(&curve, weight, number));
 #endif
     sums->half_depth += half_depth;
 }

@@ -58,7 +58,7 @@ const std::map<std::string, std::pair<std::string, std::string>>& golden() {
           "51912de157e9c9464614d87939d8c79cbc8dc51483d99e60ce194ab2435032f7"}},
         {"feature march",
          {"848c0082efc57bcf57b35bde58fe043ba185fd2f0735a551e5f0d301932f5fc4",
-          "db9fd8bf0e4db449981c22473f6ee6daf14fc4e55ab1b38313819b0b57745cf8"}},
+          "e7da1890bc9a7ddc30e656fb029b0a3e203d56575845ecc3ed1decf159718536"}},
         {"compute volume",
          {"c8b99cfb62b2251fc49551d1192741c6772bde8477a9ce6d30c6c181a7fd7051",
           "46ca9d660a34b6798693ef3e9f06588df266edd06875136047bdb0b79045f730"}},

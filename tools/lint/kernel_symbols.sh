@@ -26,7 +26,7 @@ check() { # FILE DEFINE...
 }
 
 # Masks are 1 at width 1 and -1 at width 16, so what reads them stays in one header.
-masks=$(cd "$1/kernels" && grep -rnP '^((?!//).)*\b(any|all|select)\(' --include='*.cl' --include='*.clh' . | grep -v '^\./lib/vec') || true
+masks=$(cd "$1/kernels" && grep -rnP '^((?!//).)*\b(any|all|select)\(' --include='*.cl' --include='*.clh' . | grep -vE '^\./lib/(vec|builtins)') || true
 [ -z "$masks" ] || { echo "any, all and select belong in lib/vec*.clh only:"; echo "$masks"; exit 1; }
 
 for_each_kernel "$1"
