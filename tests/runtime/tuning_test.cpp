@@ -181,7 +181,7 @@ TEST(Declared, SayWhatIsAllowed) {
     EXPECT_EQ(why_refused("packet_group", 100000), "\"packet_group\" is 100000, but must be a power of two from 1 to 256");
     EXPECT_EQ(why_refused("splat_bins", 0), "\"splat_bins\" is 0, but must be a whole number from 1 to 256");
     EXPECT_THAT(why_refused("pakcet", 8),
-                testing::AllOf(HasSubstr("did you mean packet?"), HasSubstr("there are brick_log2, conv_block, ")));
+                testing::AllOf(HasSubstr("did you mean packet?"), HasSubstr("there are band_pixels, brick_log2, ")));
     EXPECT_THAT(why_refused("", 8), HasSubstr("there is no tunable \"\"; there are"));
 }
 
