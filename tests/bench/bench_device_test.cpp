@@ -75,6 +75,14 @@ TEST_F(Bench, MeasuresALiveView) {
     EXPECT_EQ(run({"--live", "--device", "0", "--tiny", "--volume", file("none.mha")}).exit_code, 3);
 }
 
+TEST_F(Bench, MeasuresAViewByItsSocket) {
+    const Outcome o = run({"--view", "--device", "0", "--tiny", "--seconds", "0.5"});
+    EXPECT_EQ(o.exit_code, 0) << o.err;
+    for (const char* what : {"pictures/s", "\n80x80 ", "full size", "transfer function", "interrupting", "soak", "memory "})
+        EXPECT_THAT(o.out, HasSubstr(what));
+    EXPECT_EQ(run({"--view", "--live"}).exit_code, 2);
+}
+
 TEST_F(Bench, AWrongResultIsSaid) { // the stage reads its kernel from a folder where a sign is turned
     std::filesystem::create_directories(home.path() / "kernels/probe");
     std::ofstream(home.path() / "kernels/probe/triad.cl") << "#include \"lib/stream.clh\"\n"

@@ -16,6 +16,7 @@
 #include "tools/bench/bench_scene.hpp"
 #include "tools/bench/live.hpp"
 #include "tools/bench/stage.hpp"
+#include "tools/bench/view.hpp"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -32,7 +33,9 @@ namespace {
 struct Options {
     std::string selector, json, html, from, volume;
     std::vector<std::string> stages;
-    bool quick = false, tune = false, save = false, explain = false, child = false, hashes = false, tiny = false, live = false;
+    bool quick = false, tune = false, save = false, explain = false, child = false, hashes = false, tiny = false, live = false,
+         view = false;
+    double soak_seconds = 0;
 };
 
 /// What --save keeps: a device per task; the general one is that for rendering.
@@ -105,7 +108,7 @@ std::vector<std::string> stage_names() {
     return names;
 }
 
-/// Frames per second of a live view on each device, and where the time goes.
+/// A live view on each device: its frames per second and where the time goes, or what a client of `clvr view` sees.
 void bench_live(const Options& o) {
     std::vector<DeviceFacts> facts = list_devices();
     if (!o.selector.empty() || facts.empty()) facts = select_devices(o.selector).devices;
@@ -114,10 +117,18 @@ void bench_live(const Options& o) {
         std::vector<Device> devices{open_trusted(f)};
         Scene scene = benchmark_scene(640, 640, 1);
         if (!o.volume.empty()) scene.transfer.reset();
-        const PreparedVolume volume(o.volume.empty() ? benchmark_volume(o.tiny ? 64 : 256) : open_volume(o.volume, {}, devices));
+        const auto volume = std::make_shared<const PreparedVolume>(o.volume.empty() ? benchmark_volume(o.tiny ? 64 : 256)
+                                                                                    : open_volume(o.volume, {}, devices));
         const double seconds = o.tiny ? 0.01 : o.quick ? 2 : 6;
-        const std::vector<LiveRow> rows = measure_live(devices.front(), volume, scene, model, seconds, o.tiny ? 8 : 1);
-        fmt::print("{}, {}:\n{}", f.name, o.volume.empty() ? "a computed volume" : o.volume, live_table(rows));
+        const int divider = o.tiny ? 8 : 1, rounds = o.tiny ? 1 : o.quick ? 3 : 6;
+        std::string table;
+        if (o.view) {
+            scene.spp = 256; // it has not settled when it is interrupted
+            table = view_table(measure_view(devices.front(), volume, scene, model, seconds, rounds, o.soak_seconds, divider));
+        } else {
+            table = live_table(measure_live(devices.front(), *volume, scene, model, seconds, divider));
+        }
+        fmt::print("{}, {}:\n{}", f.name, o.volume.empty() ? "a computed volume" : o.volume, table);
         std::fflush(stdout);
     }
 }
@@ -162,7 +173,14 @@ int run(int argc, char** argv) {
         ->type_name("STAGE")
         ->group("Measuring");
     app.add_flag("--live", o.live, "Measure a live view instead: frames per second, and where the time goes")->group("Measuring");
-    app.add_option("--volume", o.volume, "--live: this volume in place of a computed one")->type_name("VOLUME")->group("Measuring");
+    app.add_flag("--view", o.view, "Measure what a client of clvr view sees instead: pictures per second, delays, bytes")
+        ->excludes("--live")
+        ->group("Measuring");
+    app.add_option("--seconds", o.soak_seconds, "--view: also turn and edit for so long, and compare the memory")
+        ->type_name("SECONDS")
+        ->check(CLI::Range(0.0, 1e6))
+        ->group("Measuring");
+    app.add_option("--volume", o.volume, "--live, --view: this volume in place of a computed one")->type_name("VOLUME")->group("Measuring");
     app.add_flag("--quick", o.quick, "Shorter measurements, and a tuning within a minute of what matters most")->group("Measuring");
     app.add_flag("--tune", o.tune, "Find the fastest tunables of each device (at most 5 minutes each) and keep them for all commands")
         ->group("Measuring");
@@ -185,7 +203,7 @@ int run(int argc, char** argv) {
         make_page_again(o);
         return 0;
     }
-    o.live ? bench_live(o) : bench_devices(o);
+    o.live || o.view ? bench_live(o) : bench_devices(o);
     return 0;
 }
 
