@@ -98,8 +98,8 @@ TEST_F(ViewInABrowser, TurnsEditsCutsAndSavesWhatRenderWrites) {
 
     browser->drag(150, 200, 230, 190); // turns
     const double turned = picture(*browser, first);
-    browser->wheel(150, 200, -240); // comes nearer
     const int lit = lit_pixels(*browser);
+    browser->wheel(150, 200, -240); // comes nearer
     const double near = picture(*browser, turned);
     EXPECT_NE(lit_pixels(*browser), lit);
     browser->key("z", 'Z', 2); // Ctrl: back
