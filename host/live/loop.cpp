@@ -1,10 +1,10 @@
 #include "host/live/loop.hpp"
+#include "host/live/caught.hpp"
 #include "host/live/moving_size.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <deque>
-#include <new>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -55,19 +55,6 @@ struct Shown {
         samples = 0;
     }
 };
-
-/// What was thrown, as the one error type.
-Error caught() {
-    try {
-        throw;
-    } catch (const Error& error) {
-        return error;
-    } catch (const std::bad_alloc&) {
-        return Error(ErrorKind::host_memory, "there is no memory left on this machine");
-    } catch (const std::exception& error) {
-        return Error(ErrorKind::internal, error.what());
-    }
-}
 
 } // namespace
 
@@ -176,7 +163,7 @@ private:
         try {
             f();
         } catch (...) {
-            const Error error = caught();
+            const Error error = caught_error();
             sinks_.failed(view_ ? view_->generation : 0, error);
         }
         for (std::string& warning : painter_.take_warnings()) sinks_.warned(std::move(warning));
@@ -189,7 +176,7 @@ private:
             if (!view_) view_.emplace();
             view_->take(post.scene, post.generation, !changed);
         } catch (...) {
-            const Error error = caught();
+            const Error error = caught_error();
             sinks_.failed(post.generation, error);
         }
     }

@@ -33,14 +33,14 @@ struct Slack {
     double centred() const { return std::max(above, below); } // without shift
 };
 
+} // namespace
+
 Double3 centre_of(const std::vector<Double3>& points) {
     Double3 low = points.front(), high = low;
     for (const auto& p : points)
         for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
     return (low + high) * 0.5;
 }
-
-} // namespace
 
 std::vector<Double3> visible_outline(const Geometry& geometry, const MajorantGrid& grid, const std::vector<float>& cell_majorants,
                                      const IndexBox& visible, const IndexBox& clip) {

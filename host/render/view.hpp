@@ -18,6 +18,9 @@ struct View {
 std::vector<Double3> visible_outline(const Geometry& geometry, const MajorantGrid& grid, const std::vector<float>& cell_majorants,
                                      const IndexBox& visible, const IndexBox& clip);
 
+/// The middle of the points' box; there is a point.
+Double3 centre_of(const std::vector<Double3>& points);
+
 /// Resolves the scene's camera. Without eye and target it looks from azimuth and elevation at the outline, as near as it fits with a
 /// margin. `steady`: the target is the outline's centre and the distance that of the widest azimuth, so that a turntable neither sways nor
 /// breathes.

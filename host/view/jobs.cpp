@@ -23,8 +23,7 @@ Jobs::~Jobs() = default;
 
 Job Jobs::begin(Product what, const std::string& name) {
     const std::lock_guard lock(mutex_);
-    if (std::any_of(jobs_.begin(), jobs_.end(), [](const auto& kept) { return !kept->job.finished(); }))
-        throw Error(ErrorKind::usage, "Another save is not finished yet. Wait for it, or cancel it.");
+    if (one_is_unfinished()) throw Error(ErrorKind::usage, "Another save is not finished yet. Wait for it, or cancel it.");
     if (jobs_.size() >= most_jobs) jobs_.erase(jobs_.begin());
     auto kept = std::make_shared<Kept>();
     kept->job.id = std::to_string(++last_), kept->job.what = what, kept->job.name = name;
@@ -92,6 +91,10 @@ std::vector<Job> Jobs::all() const {
 
 bool Jobs::busy() const {
     const std::lock_guard lock(mutex_);
+    return one_is_unfinished();
+}
+
+bool Jobs::one_is_unfinished() const {
     return std::any_of(jobs_.begin(), jobs_.end(), [](const auto& kept) { return !kept->job.finished(); });
 }
 

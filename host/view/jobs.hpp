@@ -62,7 +62,9 @@ private:
     std::vector<std::shared_ptr<Kept>> jobs_; // the oldest first
     int last_ = 0;
 
+    // Under the lock.
     std::shared_ptr<Kept> find(const std::string& id) const;
+    bool one_is_unfinished() const;
     template <class F>
     void change(const std::string& id, bool always, F&& f);
 };

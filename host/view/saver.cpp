@@ -1,7 +1,7 @@
 #include "host/view/saver.hpp"
 #include "host/io/picture/frame_file.hpp"
 #include "host/io/zip_file.hpp"
-#include "host/view/words.hpp"
+#include "host/live/caught.hpp"
 #include "runtime/system/atomic_file.hpp"
 
 #include <filesystem>
@@ -57,7 +57,7 @@ void Saver::guarded(const Job& job, F&& f) {
         e.kind() == ErrorKind::interrupted ? jobs_.cancelled(job.id) : jobs_.failed(job.id, e.line());
     } catch (...) {
         remove_file();
-        jobs_.failed(job.id, words_of_exception());
+        jobs_.failed(job.id, caught_error().line());
     }
 }
 

@@ -1,8 +1,8 @@
 #include "host/view/viewer.hpp"
 #include "host/io/picture/frame_file.hpp"
+#include "host/live/caught.hpp"
 #include "host/view/limits.hpp"
 #include "host/view/net_text.hpp"
-#include "host/view/words.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -148,7 +148,7 @@ void Viewer::place_and_accept(ClientId client, const Scene& scene, std::optional
         try {
             accept(client, scene, placed_camera(scene, *volume), generation, id);
         } catch (...) {
-            const std::string words = words_of_exception();
+            const std::string words = caught_error().line();
             clients_.send(client, id ? refused_reply(*id, words) : refused_scene_reply(*generation, words));
         }
     });
@@ -179,7 +179,7 @@ void Viewer::encode_and_show(const LivePicture& picture) try {
     last_picture_ = encoded;
     clients_.show_all(encoded);
 } catch (...) {
-    clients_.send_all(notice_reply("error", "A picture cannot be sent: " + words_of_exception()));
+    clients_.send_all(notice_reply("error", "A picture cannot be sent: " + caught_error().line()));
 }
 
 void Viewer::let_live_picture_go_on() {
@@ -222,7 +222,7 @@ void Viewer::check_upload(const std::string& path, const std::string& name, cons
         return answer({415, name + " " + e.what()}); // without the path that it has here
     } catch (...) {
         upload_failed(path);
-        return answer({415, name + ": " + words_of_exception()});
+        return answer({415, name + ": " + caught_error().line()});
     }
     std::string handle;
     {
@@ -248,7 +248,7 @@ void Viewer::read_step(int step) {
     try {
         show_step(step, settings_.read_step(step));
     } catch (...) {
-        clients_.send_all(notice_reply("error", "Time step " + std::to_string(step) + ": " + words_of_exception()));
+        clients_.send_all(notice_reply("error", "Time step " + std::to_string(step) + ": " + caught_error().line()));
     }
 }
 

@@ -72,13 +72,6 @@ ordered_json volume_json(const PreparedVolume& volume, const std::string& name, 
 
 namespace {
 
-Double3 centre_of(const std::vector<Double3>& points) {
-    Double3 low = points.front(), high = low;
-    for (const auto& p : points)
-        for (std::size_t a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
-    return (low + high) * 0.5;
-}
-
 /// The wanted direction, or the picture's own where one looks along it.
 Double3 up_of(const Camera& camera, const View& view) {
     return norm(cross(view.forward, camera.up)) > 1e-5 * norm(camera.up) ? camera.up : unit(view.up);

@@ -27,6 +27,8 @@ fs::path pocl_cache() {
     return {};
 }
 
+bool is_pocl(const std::string& platform) { return platform.find("Portable Computing Language") != std::string::npos; }
+
 Temporary private_cache; // of this process, empty when the usual one serves
 
 /// Why so many bytes cannot be written into the folder; empty: they can.
@@ -66,12 +68,10 @@ std::string pocl_cache_problem() {
                        cache.string(), why);
 }
 
-bool pocl_aborts_on_broken_binaries(const std::string& platform) {
-    return platform.find("Portable Computing Language") != std::string::npos;
-}
+bool pocl_aborts_on_broken_binaries(const std::string& platform) { return is_pocl(platform); }
 
 bool pocl_reads_a_header_of_all_builtins(const std::string& platform, const std::string& driver_version) {
-    return platform.find("Portable Computing Language") != std::string::npos && driver_version.rfind("3.1", 0) == 0;
+    return is_pocl(platform) && driver_version.rfind("3.1", 0) == 0;
 }
 
 double milliseconds_though_stamps_run_backwards(std::uint64_t start_ns, std::uint64_t end_ns) {

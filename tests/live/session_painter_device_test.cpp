@@ -1,5 +1,6 @@
 // The painter of a live view: whatever was drawn before, its pictures have the bits of a session made for them.
 #include "tests/live/painted.hpp"
+#include "tests/render/bytes_written.hpp"
 #include "tests/runtime/faulty_devices.hpp"
 
 #include <gmock/gmock.h>
@@ -332,26 +333,17 @@ TEST(SessionPainter, PositionsLieWhereThePictureShowsThem) {
 
 TEST(SessionPainter, ACameraCostsNoUploadOfTheVolume) {
     Device device = open_device();
-    const auto written = [&] {
-        device.finish();
-        double bytes = 0;
-        for (const ProfileRow& row : device.profile().rows())
-            if (row.label == "write") bytes += row.bytes;
-        return bytes;
-    };
     const auto large = std::make_shared<const PreparedVolume>(constant_volume({100, 100, 100}));
     SessionPainter painter({device}, large, default_model(), no_environment);
     Scene scene = wavy_scene();
-    painter.set_scene(scene);
-    in_motion(painter, 30, 21);
-    in_full_size(painter, scene, 1);
-    EXPECT_GT(written(), 1e6);
-    const double before = written();
+    const auto draw = [&] {
+        painter.set_scene(scene);
+        in_motion(painter, 30, 21);
+        in_full_size(painter, scene, 1);
+    };
+    EXPECT_GT(bytes_written(device, draw), 1e6);
     scene.camera.azimuth += 10;
-    painter.set_scene(scene);
-    in_motion(painter, 30, 21);
-    in_full_size(painter, scene, 1);
-    EXPECT_LT(written() - before, 2e5);
+    EXPECT_LT(bytes_written(device, draw), 2e5);
 }
 
 TEST(SessionPainter, TakesNoMoreMemoryHoweverOftenSizesChange) {

@@ -1,23 +1,9 @@
 // The rendering session's parts, changed one by one: the same bits as one made for it, and no more bytes to the device than the part has.
+#include "tests/render/bytes_written.hpp"
 #include "tests/render/several_devices.hpp"
 
 namespace clvr::testing {
 namespace {
-
-/// Bytes written to the device by a call (uploads and fills' commands are not writes).
-template <class Call>
-double bytes_written(Device& device, Call&& call) {
-    const auto written = [&] {
-        device.finish();
-        double bytes = 0;
-        for (const ProfileRow& row : device.profile().rows())
-            if (row.label == "write") bytes += row.bytes;
-        return bytes;
-    };
-    const double before = written();
-    call();
-    return written() - before;
-}
 
 /// Two samples and the features.
 Frame seen(RenderSession& session) {
