@@ -89,7 +89,7 @@ view::ViewerSettings viewer_settings(const ViewOptions& o, const Scene& scene, c
     settings.version = CLVR_VERSION;
     settings.output_dir = o.output_dir;
     const bool gpu = std::any_of(devices.begin(), devices.end(), [](const Device& d) { return d.facts().type == DeviceType::gpu; });
-    settings.time_steps = time_steps(volume->voxels);
+    settings.time_steps = volume->voxels.frames;
     settings.read_step = [scene](int step) {
         VolumeReadOptions reading = scene.reading;
         reading.frame = step;

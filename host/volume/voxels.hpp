@@ -50,6 +50,7 @@ struct Voxels {
     std::string source;             ///< the file (or "demo:head") this came from
     std::string format;             ///< "NIfTI", "DICOM series", ...
     std::string modality;           ///< "CT", "MR", ... where the file says so, else empty
+    int frames = 1;                 ///< of the file's series of volumes, of which this is one; 1 where it does not say (DICOM)
     std::size_t repaired = 0;       ///< NaN and infinite voxels that were replaced
     std::vector<std::string> notes; ///< what the reader wants the user to know (a warning a line)
     /// How the reader understood what a file may say in several ways ("spacing z from OME-XML"): shown by `clvr info`, no warnings.

@@ -77,6 +77,7 @@ TEST_F(MetaImage, FramesAndHeaderSize) {
     const Voxels v = read("a.mha", header + local + several(2, false), frame(1));
     expect_voxels(v, 1);
     EXPECT_THAT(v.decisions, Contains(HasSubstr("frame 1 of 0 to 1")));
+    EXPECT_EQ(v.frames, 2);
     refused("a.mha", header + local + several(2, false), {"frame 2"}, frame(2));
     write(folder / "a.raw", std::string(33, 'x') + several(2, false));
     for (const char* skip : {"33", "-1"}) expect_voxels(read("a.mhd", header + "HeaderSize = " + skip + "\nElementDataFile = a.raw\n"));

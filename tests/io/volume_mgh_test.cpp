@@ -55,6 +55,7 @@ TEST(VolumeMgh, ReadsTheChosenFrameAndPassesOverTags) {
     for (std::size_t i = 0; i < s.voxels.size(); ++i) ASSERT_EQ(v.data<std::int16_t>()[i], s.voxels[i] + 2);
     EXPECT_TRUE(v.notes.empty());
     EXPECT_THAT(v.decisions, Contains(HasSubstr("frame 2 of 0 to 2")));
+    EXPECT_EQ(v.frames, 3);
 }
 
 TEST(VolumeMgh, IsKnownByItsBytesAndRefusedWhereTheyAreOthers) {

@@ -139,6 +139,7 @@ TEST(VolumeMrc, StacksOfVolumesHaveFramesAndStacksOfImagesSlices) {
     ASSERT_EQ(v.dims, (Int3{5, 4, 3}));
     EXPECT_TRUE(std::equal(all.voxels.begin() + 60, all.voxels.end(), v.data<std::int16_t>()));
     EXPECT_THAT(v.decisions, Contains(HasSubstr("frame 1 of 0 to 1")));
+    EXPECT_EQ(v.frames, 2);
     f.mz = 4;
     expect_error([&] { read_volume(write(folder / "b.mrc", mrc(all, f))); }, {"6 sections", "4 in each"});
     f.group = 0, f.mz = 1;

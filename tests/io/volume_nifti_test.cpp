@@ -126,6 +126,7 @@ TEST(VolumeNifti, ReadsTheChosenFrameOfATimeSeries) {
             options.frame = t;
             const Voxels v = read_volume(folder / name, options);
             ASSERT_EQ(v.dims, s.dims);
+            EXPECT_EQ(v.frames, 3);
             for (std::size_t i = 0; i < s.voxels.size(); ++i) ASSERT_EQ(v.data<std::int16_t>()[i], s.voxels[i] + t);
         }
         VolumeReadOptions options;

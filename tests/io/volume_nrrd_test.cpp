@@ -134,6 +134,7 @@ TEST_F(Nrrd, TimesAreFrames) {
             expect_voxels(v, 2);
             expect_near(v.geometry.origin, s.geometry.origin);
             EXPECT_THAT(v.decisions, Contains(HasSubstr("frame 2 of 0 to 2")));
+            EXPECT_EQ(v.frames, 3);
             refused("a.nrrd", with_axis(3, kind, fastest), {"frame 3", "3 frames"}, frame(3));
         }
     // In the middle of the axes of space.

@@ -39,6 +39,7 @@ TEST(VolumeTiff, TakesImageJsCalibrationAndFrames) {
     VolumeReadOptions options;
     options.frame = 1;
     const Voxels v = read_volume(write(folder / "a.tif", tiff(pages)), options);
+    EXPECT_EQ(v.frames, 2);
     EXPECT_EQ(v.dims, (Int3{5, 4, 3}));
     EXPECT_TRUE(std::equal(s.voxels.begin() + 60, s.voxels.end(), v.data<std::int16_t>()));
     EXPECT_NEAR(v.geometry.spacing[0], 0.5e-3, 1e-9); // 2 pixels a micrometre

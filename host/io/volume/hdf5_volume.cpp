@@ -158,7 +158,7 @@ Hdf5Volume plain_hdf5_volume(const Hdf5File& file, const std::string& inside, co
     }
     check_frame(options.frame, frames, file.path());
     const auto channel = chosen_channel(options, channels, file.path(), v.notes);
-    say_frame(options.frame, frames, "t", v.decisions);
+    v.frames = say_frame(options.frame, frames, "t", v.decisions);
     std::string order;
     for (std::size_t i = 0; i < roles.size(); ++i) {
         const bool spatial = roles[i] == AxisRole::x || roles[i] == AxisRole::y || roles[i] == AxisRole::z;

@@ -58,7 +58,7 @@ Hdf5Volume imaris_volume(const Hdf5File& file, const VolumeReadOptions& options)
     if (h.data.dims.size() != 3) bad_file(file.path(), "data set {} has {} axes, expected 3", data, h.data.dims.size());
     file.check_readable(h.data);
     describe(v, file.path(), "Imaris", *h.data.type);
-    say_frame(options.frame, times, "the time points", v.decisions);
+    v.frames = say_frame(options.frame, times, "the time points", v.decisions);
 
     h.start = {0, 0, 0};
     h.axis = {2, 1, 0};

@@ -163,7 +163,7 @@ Voxels read_metaimage(const std::string& path, const VolumeReadOptions& options)
     const auto channels = parse_integers(h.tag("ElementNumberOfChannels", "1"), 1, 1, "ElementNumberOfChannels", path).front();
     const std::int64_t frames = sizes.size() > 3 ? sizes[3] : 1;
     check_frame(options.frame, frames, path);
-    say_frame(options.frame, frames, "the fourth axis", v.decisions);
+    v.frames = say_frame(options.frame, frames, "the fourth axis", v.decisions);
     const std::vector<OtherAxis> others{{channels, chosen_channel(options, channels, path, v.notes), 1},
                                         {frames, options.frame, static_cast<std::int64_t>(v.count())}};
     read_payload(payload_of(h, sizes, path), type, others, v);

@@ -78,7 +78,7 @@ Voxels read_mgh(const std::string& path, const VolumeReadOptions& options) {
     v.dims = dims.dims;
     v.geometry = geometry(h, v.dims, v);
     check_geometry(v.geometry, path);
-    say_frame(options.frame, size(3), "the fourth axis", v.decisions);
+    v.frames = say_frame(options.frame, size(3), "the fourth axis", v.decisions);
     check_capacity(dims.bytes, stream.capacity() - mgh_header_bytes, path);
     stream.skip(dims.frame_bytes * static_cast<std::uint64_t>(options.frame));
     read_samples(stream, type, must_swap(true), v);

@@ -82,7 +82,7 @@ Hdf5Volume minc_volume(const Hdf5File& file, const VolumeReadOptions& options) {
             std::int64_t entry = 0;
             if (names[i] == "time") {
                 check_frame(options.frame, h.data.dims[i], file.path());
-                say_frame(entry = options.frame, h.data.dims[i], "time", v.decisions);
+                v.frames = say_frame(entry = options.frame, h.data.dims[i], "time", v.decisions);
             } else if (names[i] == "vector_dimension") {
                 entry = chosen_channel(options, h.data.dims[i], file.path(), v.notes);
             } else if (size > 1) {

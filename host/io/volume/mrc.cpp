@@ -192,7 +192,7 @@ Voxels read_mrc(const std::string& path, const VolumeReadOptions& options) {
     const CheckedDims dims = check_dims(size, volumes, type, path);
     v.dims = dims.dims;
     check_frame(options.frame, volumes, path);
-    say_frame(options.frame, volumes, "the stack of volumes", v.decisions);
+    v.frames = say_frame(options.frame, volumes, "the stack of volumes", v.decisions);
     set_geometry(v, h, axes, options);
     check_geometry(v.geometry, path);
 

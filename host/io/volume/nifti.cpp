@@ -140,11 +140,12 @@ Voxels read_nifti(const std::string& path, const VolumeReadOptions& options) {
     const CheckedDims dims = check_dims({size[1], size[2], size[3]}, checked_product({size[4], size[5]}, path), type, path);
     check_frame(options.frame, size[4], path);
     const std::int64_t channel = chosen_channel(options, size[5], path, remarks.notes);
-    say_frame(options.frame, size[4], "axis 4 (time)", remarks.decisions);
+    const int frames = say_frame(options.frame, size[4], "axis 4 (time)", remarks.decisions);
 
     Voxels v;
     describe(v, path, h.version == 2 ? "NIfTI-2" : "NIfTI", type);
     v.dims = dims.dims;
+    v.frames = frames;
     v.geometry = nifti_geometry(h, size, path, remarks);
     if (h.slope != 0 && !std::isnan(h.slope)) { // 0 or NaN: the file says "not scaled"
         v.slope = h.slope;

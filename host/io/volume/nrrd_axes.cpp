@@ -84,7 +84,7 @@ NrrdAxes nrrd_axes(const NrrdHeader& h, const VolumeReadOptions& options, Voxels
             frames = n;
             check_frame(options.frame, n, path);
             other.index = options.frame;
-            say_frame(options.frame, n, kinds[i].empty() ? "the axis beside space" : kinds[i].c_str(), v.decisions);
+            v.frames = say_frame(options.frame, n, kinds[i].empty() ? "the axis beside space" : kinds[i].c_str(), v.decisions);
         } else {
             if (roles[i] == NrrdRole::foreign && !options.channel)
                 bad_file(path, "each voxel has {} values (NRRD kind \"{}\"): clvr renders scalar volumes, --channel N takes one of them", n,

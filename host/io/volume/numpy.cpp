@@ -141,7 +141,7 @@ Voxels read_numpy(const std::string& path, const VolumeReadOptions& options) {
     v.dims = dims.dims;
     check_frame(options.frame, axes[0], path);
     v.decisions.push_back(fmt::format("the array of shape {} is ({}z, y, x)", shape, axes[0] > 1 ? "time, " : ""));
-    say_frame(options.frame, axes[0], "the first axis", v.decisions);
+    v.frames = say_frame(options.frame, axes[0], "the first axis", v.decisions);
     if (type == SampleType::u8 && h.descr.find("b1") != std::string::npos) v.decisions.push_back("booleans are 0 and 1");
     if (type == SampleType::u8 && axes[0] == 1 && (axes[3] == 3 || axes[3] == 4) && std::min(axes[1], axes[2]) > 16)
         v.notes.push_back(fmt::format("the array of shape {} is taken as (z, y, x): is it a colour picture?", shape));

@@ -1,6 +1,5 @@
 #include "host/io/volume/reading_options.hpp"
 #include "host/io/volume/samples.hpp"
-#include "host/io/volume/volume_file.hpp"
 
 namespace clvr {
 
@@ -14,16 +13,9 @@ std::int64_t chosen_channel(const VolumeReadOptions& options, std::int64_t chann
     return channel;
 }
 
-void say_frame(int frame, std::int64_t frames, const char* axis, std::vector<std::string>& decisions) {
+int say_frame(int frame, std::int64_t frames, const char* axis, std::vector<std::string>& decisions) {
     if (frames > 1) decisions.push_back(fmt::format("frame {} of 0 to {} along {}", frame, frames - 1, axis));
-}
-
-int time_steps(const Voxels& v) {
-    for (const std::string& decision : v.decisions) {
-        int frame = 0, last = 0;
-        if (std::sscanf(decision.c_str(), "frame %d of 0 to %d along", &frame, &last) == 2) return last + 1;
-    }
-    return 1;
+    return static_cast<int>(frames);
 }
 
 void set_spacing(Voxels& v, const VolumeReadOptions& options, const std::optional<Double3>& own) {

@@ -160,7 +160,7 @@ Voxels read_pages(const std::string& path, const std::string& name, const Volume
     check_frame(options.frame, layout.times, path);
     if (layout.times > 1 && options.frame == 0)
         v.notes.push_back(fmt::format("the file has {} times: the first is read (--frame N picks)", layout.times));
-    say_frame(options.frame, layout.times, "time", v.decisions);
+    v.frames = say_frame(options.frame, layout.times, "time", v.decisions);
     const std::vector<TiffPlane> planes = chosen_planes(layout, channel.plane, options.frame, path);
     for (const TiffPlane& p : planes) { // every page is checked before the first is decoded
         const TiffFile& file = files.select(p);

@@ -12,9 +12,6 @@ namespace clvr {
 /// finite and nonzero) before its decoder runs. Throws Error{input}: one line with the file, what was expected and found, and what to try.
 Voxels read_volume(const std::string& path, const VolumeReadOptions& options = {});
 
-/// How many times the file has that they were read from, as its reader says it in `decisions`; 1 where it says nothing (DICOM).
-int time_steps(const Voxels& v);
-
 /// SHA-256 (hex) of dims, type and decoded voxels.
 std::string volume_sha256(const Voxels& v);
 

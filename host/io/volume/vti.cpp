@@ -16,7 +16,7 @@ Voxels read_vti(const std::string& path, const VolumeReadOptions& options) {
     describe(v, path, "VTK XML image", *array.type);
     const std::int64_t frames = h.time_steps(array);
     check_frame(options.frame, frames, path);
-    say_frame(options.frame, frames, "its time steps", v.decisions);
+    v.frames = say_frame(options.frame, frames, "its time steps", v.decisions);
     const auto channel = chosen_channel(options, array.components, path, v.notes);
     v.dims = check_dims(h.grid().samples(array.of_cells), array.components, *array.type, path).dims;
     v.geometry = h.grid().placed(array.of_cells);
